@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import funicular as fu
 import jsonschema
@@ -34,27 +35,35 @@ class Asked:
     folder: Path
     levels: frozenset[Level]
 
-    def run(self, **settings) -> fu.Run:
+    def new_run(self, **settings) -> fu.Run:
         """Return a run after a check that all numbers are finite."""
         run = self.scene.run(integrator=self.integrator, progress=False, **settings)
         finite(run)
         return run
 
+    def run(self) -> fu.Run:
+        """Return the run by the settings of the scene, computed once for equal scenes and integrators."""
+        return once((self.levels, self.integrator), self.new_run)
 
     def equilibrium(self) -> Equilibrium:
         """Return the equilibrium, computed once for equal scenes."""
-        if self.levels not in STATES:
-            try:
-                STATES[self.levels] = self.scene.equilibrium()
-            except fu.FunicularError as error:
-                STATES[self.levels] = error
-        if isinstance(found := STATES[self.levels], fu.FunicularError):
-            raise found
-        return found
+        return once(self.levels, self.scene.equilibrium)
 
 
-STATES: dict[frozenset[Level], Equilibrium | fu.FunicularError] = {}
-"""By levels of a scene, its state of rest or why there is none."""
+FOUND: dict[Hashable, Any] = {}
+"""Runs and states of rest of scenes by their levels, or why there is none."""
+
+
+def once(key: Hashable, compute: Callable[[], Any]) -> Any:
+    """Return what is computed, or raise its error again, computed once for each key."""
+    if key not in FOUND:
+        try:
+            FOUND[key] = compute()
+        except fu.FunicularError as error:
+            FOUND[key] = error
+    if isinstance(found := FOUND[key], fu.FunicularError):
+        raise found
+    return found
 
 
 def finite(found) -> None:
@@ -93,16 +102,17 @@ def motion(on: Asked) -> None:
 
 def fixed_steps(on: Asked) -> None:
     on.scene.run_settings.pop("tol")
-    on.run(step=TIME / (1000 if on.integrator == "explicit" else 300))
+    on.new_run(step=TIME / (1000 if on.integrator == "explicit" else 300))
 
 
 def from_rest(on: Asked) -> None:
-    on.run(initial="equilibrium")
+    on.equilibrium()  # raises the error of a scene without one, which is sought once for all questions
+    on.new_run(initial="equilibrium")
 
 
 def from_relaxed(on: Asked) -> None:
     on.scene.relax_settings = {"max_steps": 3000}
-    on.run(initial="relaxed")
+    on.new_run(initial="relaxed")
 
 
 def from_another_run(on: Asked) -> None:
@@ -112,15 +122,15 @@ def from_another_run(on: Asked) -> None:
 
 def from_arrays(on: Asked) -> None:
     vectors = on.scene.cables["wire"].nodal_vectors
-    on.run(initial={"wire.nodal_vectors": vectors, "wire.nodal_velocity": 0 * vectors})
+    on.new_run(initial={"wire.nodal_vectors": vectors, "wire.nodal_velocity": 0 * vectors})
 
 
 def named_quantities(on: Asked) -> None:
-    on.run(quantities=["wire.position.y"])
+    on.new_run(quantities=["wire.position.y"])
 
 
 def on_threads(on: Asked) -> None:
-    same(on.run(threads=2), on.run())
+    same(on.new_run(threads=2), on.run())
 
 
 def many(on: Asked) -> None:
@@ -132,7 +142,7 @@ def many(on: Asked) -> None:
 
 
 def errors(on: Asked) -> None:
-    run = on.run(estimate=True)
+    run = on.new_run(estimate=True)
     assert "errors" in run.report or any("errors are not estimated" in text for text in run.report["messages"])
 
 
@@ -153,7 +163,7 @@ def resumed(on: Asked) -> None:
         failing(patch, 15, Killed())
         with suppress(Killed):  # an event may end it before
             on.scene.run(**settings, progress=False)
-    same(on.scene.run(**settings, resume=True, progress=False), on.run(output_step=TIME / 8))
+    same(on.scene.run(**settings, resume=True, progress=False), on.new_run(output_step=TIME / 8))
 
 
 # ---- results and pictures
@@ -205,7 +215,7 @@ def page_of_scene(on: Asked) -> None:
 def plots(on: Asked) -> None:
     """Draw the scene, its equilibrium and its modes."""
     drawn(on.scene.plot())
-    state = on.scene.equilibrium()
+    state = on.equilibrium()
     drawn(state.plot())
     drawn(on.scene.modes(2, about=state).plot())
 
@@ -227,8 +237,7 @@ def forces_at_rest(on: Asked) -> None:
 
 
 def page_of_rest(on: Asked) -> None:
-    found = on.scene.equilibrium()
-    found.save_html(on.folder / "rest.html")
+    on.equilibrium().save_html(on.folder / "rest.html")
 
 
 def load_path(on: Asked) -> None:

@@ -1,8 +1,8 @@
 """Every pair of a feature of a scene and a question works, or is refused before any work.
 
-The factors are those of `paired_scenes.py`, the integrators and the questions of `paired_questions.py`. Each question
-is asked at every level; a slow test covers all pairs of levels. A pair works if a row with it gives finite numbers
-without a RuntimeWarning.
+The factors are those of `paired_scenes.py`, the integrators and the questions of `paired_questions.py`. A slow test
+covers all pairs of levels with the quick questions; the default run asks some of them at every level, and the others of
+every element. A pair works if a row with it gives finite numbers without a RuntimeWarning.
 """
 
 import inspect
@@ -31,6 +31,7 @@ from funicular.parts.surface_shapes import SURFACE_SHAPES
 from funicular.results.equilibrium import Equilibrium
 from funicular.results.modes import Modes
 from funicular.results.run import Run
+from funicular.solve.statics import static
 from paired_questions import QUESTIONS, Asked
 from paired_scenes import FACTORS, PROFILES, SECTIONS, SIGNALS, SOLIDS, STOPS, SURFACES, build, laws
 
@@ -40,6 +41,10 @@ SEARCHES = ("adjusted", "errors", "from_another_run", "loads_in_steps", "modes_a
             "from_relaxed", "swept")
 """Questions that take long: pictures; searches with many steps, several runs or states of rest of a scene."""
 QUICK = [question for question in QUESTIONS if question not in (*PICTURES, *SEARCHES)]
+BROAD = ("motion", "saved", "forces_in_sections", "rest", "modes_at_rest", "text")
+"""Quick questions through which the results of all others go."""
+MIN_LOAD_STEP = 0.1
+"""Load steps below this fraction are not taken: each halving of them takes seconds in scenes that are too difficult."""
 
 EVERY = FACTORS | {"integrator": [AUTO, *INTEGRATORS]}
 NEUTRAL = {factor: levels if factor == "element" else levels[:1] for factor, levels in EVERY.items()}
@@ -57,6 +62,11 @@ NOT_ASKED = {
 WORKS, REFUSED, TOLD = "", "refused", "told"
 FREE = "runs round freely"
 """What the error says where a closed rope has no state of rest without friction."""
+
+
+@pytest.fixture(autouse=True)
+def few_load_steps(monkeypatch):
+    monkeypatch.setattr(static, "MIN_LOAD_STEP", MIN_LOAD_STEP)
 
 
 @contextmanager
@@ -149,11 +159,11 @@ def descriptions() -> tuple[CoveringArray, dict[frozenset[Level], str]]:
     return array, answered(array, NEUTRAL)
 
 
-def asked(questions: Sequence[str], everything: bool) -> dict[frozenset[Level], str]:
-    """Return the errors of questions, each with each level or for all pairs of levels."""
+def asked(questions: Sequence[str], of: Sequence[str] | None = None) -> dict[frozenset[Level], str]:
+    """Return the errors of questions for all pairs of levels, or for those of the question with some factors."""
     factors = EVERY | {"question": list(questions)}
     array = CoveringArray(factors, [pair for pair in all_pairs(factors)
-                                    if everything or any(factor == "question" for factor, _ in pair)])
+                                    if of is None or {factor for factor, _ in pair} - set(of) == {"question"}])
     for levels in descriptions()[0].refused:
         array.refuse(levels)
     errors = answered(array, NEUTRAL | {"question": questions[:1]})
@@ -173,13 +183,18 @@ def test_scenes_are_described_or_refused():
 
 def check_with_each_level(question: str) -> None:
     matplotlib.use("Agg")
-    errors = asked([question], everything=False)
+    errors = asked([question], of=list(EVERY))
     assert not errors, told(errors)
 
 
-@pytest.mark.parametrize("question", QUICK)
+@pytest.mark.parametrize("question", BROAD)
 def test_each_question_with_each_level(question):
     check_with_each_level(question)
+
+
+def test_every_quick_question_of_every_element():
+    errors = asked([question for question in QUICK if question not in BROAD], of=["element"])
+    assert not errors, told(errors)
 
 
 @pytest.mark.slow
@@ -201,7 +216,7 @@ class TestSearches:
 @pytest.mark.slow
 class TestAll:
     def test_every_pair(self):
-        errors = asked(QUICK, everything=True)
+        errors = asked(QUICK)
         assert not errors, told(errors)
 
 
