@@ -102,8 +102,8 @@ def cayley_error(body: Body) -> Program:
     begin, end = (sum(each * t**k / sp.factorial(k) for k, each in enumerate(q)) for t in (-h / 2, h / 2))
     turn = body.product(_conjugate(begin), end)
     off = body.product(_conjugate(turn), body.cayley(h * w / 2))[1:]
-    p.output("error", body.WINDING * np.array([sp.diff(x, h, 3).subs(h, 0).expand() / 6 for x in off]), "rad/s^3",
-             "error over h^3, about body axes")
+    third = [sp.diff(x, h, 3, simplify=False).subs(h, 0).expand() / 6 for x in off]
+    p.output("error", body.WINDING * np.array(third), "rad/s^3", "error over h^3, about body axes")
     return p
 
 
