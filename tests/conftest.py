@@ -7,9 +7,10 @@ import pytest
 from fake_recording import fake_recording
 from funicular.results import recording
 from interrupted_runs import SETTINGS, WRITES, content, kill, short
+from slow_cases import pytest_collection_modifyitems, pytest_itemcollected
 from validation import pytest_addoption, validated
 
-__all__ = ["pytest_addoption", "validated"]
+__all__ = ["pytest_addoption", "pytest_collection_modifyitems", "pytest_itemcollected", "validated"]
 
 
 def pytest_terminal_summary(terminalreporter, config):
@@ -36,6 +37,16 @@ def engine(monkeypatch, tmp_path):
     monkeypatch.setattr(recording, "recorded", lambda recorded, *_: recorded)
     monkeypatch.chdir(tmp_path)
     return module
+
+
+@pytest.fixture
+def quick_pictures(monkeypatch):
+    """Draw pictures coarsely and without a layout of their parts, and films of a few pictures."""
+    from funicular.view import plot, video
+
+    monkeypatch.setitem(plot.STYLE, "savefig.dpi", 40)
+    monkeypatch.setitem(plot.STYLE, "figure.constrained_layout.use", False)
+    monkeypatch.setattr(video, "DEFAULT_DURATION", 0.4)
 
 
 @pytest.fixture(scope="module")

@@ -93,6 +93,7 @@ def edge_error(**more):
     return float(np.linalg.norm(found[:2] - exact)) / TENSION
 
 
+@pytest.mark.slow
 def test_the_force_of_an_edge_on_a_rope_is_its_tension_times_its_turn():
     soft, meant = edge_error(stiffness=1e6), edge_error()
     assert meant < 1e-3 and meant < 0.5 * soft  # what is left is bending

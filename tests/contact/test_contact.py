@@ -299,6 +299,7 @@ def cloth(element="cable12"):
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.slow_cases("energy")
 def test_a_cable_thrown_on_hills_keeps_the_energy_balance(integrator):
     run = cloth("cable8p").run(0.25, output_step=0.01, tol=1e-5, integrator=integrator)
     assert run["energy.dissipated"][-1] > 0.3 and run["contact_1.touching"].max() > 0.3

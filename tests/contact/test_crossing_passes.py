@@ -63,6 +63,7 @@ def test_straight_cables_do_not_fly_through_each_other(**case):
 
 @settings(max_examples=40, deadline=None, derandomize=True)
 @given(approach=st.floats(0.7, 1), bows=st.tuples(st.floats(0, 0.2), st.floats(0, 0.2)), **GIVEN)
+@pytest.mark.slow
 def test_bent_cables_do_not_fly_through_each_other(**case):
     """They approach head on; test_crossing_grazes.py covers grazing."""
     check(off=3e-4, **case)

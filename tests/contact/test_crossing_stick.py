@@ -52,6 +52,7 @@ def total(run) -> np.ndarray:
 
 @pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")  # the lines overlap, to press from the start
 @pytest.mark.parametrize(("dim", "integrator"), [*((2, each) for each in INTEGRATORS), (3, "radau")])
+@pytest.mark.slow_cases("2-explicit", "3-radau")
 def test_a_mass_that_is_let_go_swings_out_in_half_cycles_and_sticks(dim, integrator):
     """Coulomb damping: each half cycle loses 2 mu N/k, until the spring no longer overcomes friction."""
     run = on_spring(dim, stretch=0.02).run(duration=0.5, output_step=np.pi / OMEGA / 20, integrator=integrator,
@@ -76,6 +77,7 @@ def test_a_mass_that_is_let_go_swings_out_in_half_cycles_and_sticks(dim, integra
 
 @pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
 @pytest.mark.parametrize("integrator", ["radau", "genalpha"])
+@pytest.mark.slow_cases("radau")
 def test_a_mass_that_is_dragged_sticks_and_slips(integrator):
     """It sticks until the spring has mu N, and then moves by V (t - sin(omega t)/omega), at rest once a period."""
     speed = 0.1

@@ -161,6 +161,7 @@ def ropes():
 @pytest.mark.parametrize(("make", "integrator"), [
     *((make, integrator) for make in (rope, bar) for integrator in ("auto", "radau", "explicit")), (ropes, "radau")])
 @pytest.mark.parametrize("tol", [1e-3, 1e-4, 1e-5, 1e-6])
+@pytest.mark.slow_cases("0.001-ropes-radau")
 def test_a_rope_and_a_bar_on_rough_ground_are_within_tol(make, integrator, tol):
     """By the ends of steps alone, the errors are up to 450 and 66 tol, and references of both integrators differ by
     1e-5.
@@ -201,6 +202,7 @@ def turning(integrator, **settings):
 
 @pytest.mark.parametrize("integrator", ["radau", "explicit"])
 @pytest.mark.parametrize("tol", [1e-3, 1e-4, 1e-5, 1e-6])
+@pytest.mark.slow_cases("0.001-radau")
 def test_a_direction_of_sliding_that_turns_is_within_tol(integrator, tol):
     """A direction that lags by half a step gives 411 tol at 1e-5 with radau, which no estimate shows."""
     reference = turning("explicit", step=2e-5)

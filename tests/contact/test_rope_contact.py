@@ -32,6 +32,7 @@ def laid(dim: int = 2, *, side: float = 1.0, height: float = -0.06, elements: in
 
 @pytest.mark.parametrize("damping", [0.0, 0.5])
 @pytest.mark.parametrize("integrator", ["radau", "genalpha", "explicit"])
+@pytest.mark.slow_cases("explicit-0.5", "genalpha-0.5", "radau-0.0")
 def test_energy_is_conserved_while_the_material_flows(integrator, damping):
     """The rope falls on the ground, from which the weight hauls it up."""
     settings = SETTINGS | {"integrator": integrator, "tol": 1e-5, "output_step": 0.02}

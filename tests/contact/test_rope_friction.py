@@ -39,6 +39,7 @@ def on_sled(dim: int = 2, *, friction: float = 0.3, velocity: float = 1e-3, damp
 @pytest.mark.parametrize("shape", [None, fu.Sphere(0.42)])
 @pytest.mark.parametrize(("friction", "damping"), [(0.0, 0.0), (0.0, 0.5), (0.3, 0.0), (0.3, 0.5)])
 @pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.slow_cases("3-0.3-0.5-None", "3-0.3-0.0-None", "3-0.0-0.0-None", "3-0.0-0.5-None")
 def test_tangent(dim, friction, damping, shape):
     """Derivatives by the rope, by the body of the surface, and of the reaction on it."""
     scene = on_sled(dim, friction=friction, damping=damping, velocity=0.1, shape=shape)
@@ -55,6 +56,7 @@ def test_tangent(dim, friction, damping, shape):
 
 @pytest.mark.parametrize("integrator", ["radau", "genalpha", "explicit"])
 @pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.slow_cases("3-explicit", "3-radau", "2-genalpha")
 def test_energy_on_a_moving_body(dim, integrator):
     """The sled is thrown back by the rope, which drags it along."""
     run = on_sled(dim, velocity=0.02).run(0.3, **SETTINGS | {"integrator": integrator, "tol": 1e-5,
@@ -100,6 +102,7 @@ def test_a_hauled_rope_has_the_friction_of_its_weight(dim):
 
 
 @pytest.mark.parametrize("along", [(1.0, 0.0, 0.0), (-1.0, 0.0, 0.0)])
+@pytest.mark.slow_cases("along0")
 def test_agrees_with_a_cable(along):
     """A sled decelerates below a rope, whose tension friction changes. The difference from a cable is in proportion to
     the length beside the sheave, into which the rope slides.
@@ -143,6 +146,7 @@ def test_momentum_with_a_free_body(friction):
     assert np.abs(after - before).max() < 1e-11
 
 
+@pytest.mark.slow
 def test_a_planar_scene_and_its_twin_in_space():
     runs = [on_sled(dim, flat=True).run(0.3, **SETTINGS | {"tol": 1e-6}) for dim in (2, 3)]
     assert runs[0]["bed.touching"].max() > 1

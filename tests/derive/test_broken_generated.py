@@ -34,6 +34,7 @@ def half_a_manifest(generated):
 
 
 @pytest.mark.parametrize("broken", [missing, syntax_error, no_manifest_of_ours, half_a_manifest])
+@pytest.mark.slow_cases("missing", "no_manifest_of_ours")
 def test_derive_mends_what_is_generated(installed, broken):
     broken(installed)
     made = subprocess.run([sys.executable, "-c", DERIVE], cwd=installed.parents[1], capture_output=True, text=True)

@@ -104,6 +104,7 @@ ENERGY = """
     ("    def damping_forces(self, program, *given):\n        raise RuntimeError('not written yet')\n",
      "line 14: RuntimeError: not written yet"),
 ], ids=["rotation", "translation", "abs", "slack", "root", "pole", "sine", "rest", "stress", "raises"])
+@pytest.mark.slow_cases("stress")
 def test_a_law_that_cannot_be_is_refused_with_its_property(tmp_path, law, part, capsys):
     message = refused(spec(tmp_path, law=law), tmp_path / "library")
     assert message.startswith(f"{tmp_path / 'mine.py'}")

@@ -158,6 +158,7 @@ def test_a_scene_says_what_is_wrong_with_its_library(tmp_path, made):
         cable(scene, element="mine", library=made)
 
 
+@pytest.mark.slow
 def test_its_cables_are_adjusted_by_the_derivatives_of_differences_of_scenes(made, monkeypatch):
     scene = funicular.Scene(gravity=(0.3, -9.81, 0))
     rope = scene.cable("wire", start=(0, 0, 0), end=(4, 0.3, 0), elements=8, rest_length=4.1, element="mine8p",

@@ -48,7 +48,7 @@ def break_output(folder: Path, file: str, kernel: str, entry: str) -> None:
 
 def test_what_is_checked_in_passes(capsys):
     """`funicular verify` in CI goes over all families."""
-    names = ["cable12", "slide_cable8p_planar_rigid", "planar_surface"]
+    names = ["cable8p", "planar_rigid", "planar_surface"]
     assert verify.main(names) == 0
     out = capsys.readouterr().out
     assert all(name in out for name in [*names, *METHODS])
@@ -74,6 +74,7 @@ def test_a_piped_table_shortens_no_name(capsys):
     ("beam12p", ["follower_force: K[2]"]),
     ("cable12", ["moment: f[4]"]),
 ])
+@pytest.mark.slow_cases("slide_cable8p_planar_rigid-outputs2", "planar_rigid-outputs1")
 def test_a_sign_changed_in_an_output_is_found_and_named(generated, capsys, family, outputs):
     changed = [(f"{family}_{kernel}", entry) for kernel, entry in (text.split(": ") for text in outputs)]
     for kernel, entry in changed:
@@ -109,6 +110,7 @@ def test_signs_changed_inside_an_element_are_found(generated, capsys):
 
 @pytest.mark.parametrize(("family", "definition", "constant"), [
     ("beam12p_continuum", "K_t0_t1[i][j]", 7), ("cable8p_engineering_exact", "K_t0_t0[i][j]", 1)])
+@pytest.mark.slow_cases("beam12p_continuum-K_t0_t1[i][j]-7")
 def test_signs_changed_inside_a_law_are_found(generated, capsys, family, definition, constant):
     change_sign(generated, family, "elastic_tangent", definition)
     break_output(generated, f"{family}.c", f"{family}_stiffness", f"A[{constant}]")
@@ -120,6 +122,7 @@ def test_signs_changed_inside_a_law_are_found(generated, capsys, family, definit
     assert f"{family}_energy: U is not" not in out
 
 
+@pytest.mark.slow
 def test_an_energy_that_is_wrong_in_spec_and_text_alike_is_found(generated, capsys, monkeypatch):
     """The derivatives then agree with one another; the integral of the shape functions differs."""
     right, name = Cable.points, "cable8p_green_exact"
@@ -135,6 +138,7 @@ def test_an_energy_that_is_wrong_in_spec_and_text_alike_is_found(generated, caps
     assert "tangent: K is not" not in out
 
 
+@pytest.mark.slow
 def test_signs_changed_inside_the_slide_are_found(generated, capsys):
     file, kernel = "slide_cable12_rigid.c", "slide_cable12_rigid_terms"
     for entry in ("W[1]", "s_bias[0]", "H[7]"):

@@ -20,6 +20,8 @@ def engine(request) -> Engine:
 
 
 @pytest.mark.parametrize("h", [1e-2, 1e-3, 1e-4])
+@pytest.mark.slow_cases("tied-0.0001", "tied-0.001", "modal_in_joints-0.0001", "modal_in_joints-0.001", "resisted-0.01",
+                        "jointed-0.001", "star-0.001", "jointed-0.0001", "resisted-0.001")
 def test_matrix_is_the_derivative_of_the_residual(engine, h):
     n = engine.unknowns
     rng = np.random.default_rng(1)

@@ -50,6 +50,7 @@ print(*after.report["messages"], flush=True)
 
 
 @pytest.mark.parametrize("parent", [1, 2])
+@pytest.mark.slow_cases("1")
 def test_threads_after_a_fork(parent, request):
     """Threads belong to their run: a forked process starts its own and does not wait for those of its parent."""
     done = subprocess.run([sys.executable, "-c", FORKED.format(parent=parent)], capture_output=True, text=True,
@@ -76,6 +77,7 @@ sys.exit(os.waitpid(children[0], 0)[1] != 0)
 """
 
 
+@pytest.mark.slow
 def test_a_fork_within_a_run(request):
     """The run continues in both processes, in the forked one without threads."""
     subprocess.run([sys.executable, "-c", WITHIN], timeout=60, check=True, cwd=request.config.rootpath)

@@ -137,6 +137,7 @@ def kirchhoff(mass, J, C, v, omega, duration):
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.slow_cases("energy", "explicit")
 def test_a_body_that_tumbles_in_water_follows_kirchhoffs_equations(integrator):
     C = np.array([[0.4, 0.1, 0.0], [0.1, 1.1, 0.2], [0.0, 0.2, 2.0]])
     J, v, omega = (0.02, 0.05, 0.06), np.array([1.0, 0.3, -0.5]), np.array([0.5, -1.0, 2.0])
@@ -241,6 +242,7 @@ def accurate(dim):
 
 
 @pytest.mark.parametrize(("integrator", "dim"), IN_WATER)
+@pytest.mark.slow_cases("explicit-3", "energy-2")
 def test_the_energy_of_the_water_is_in_the_balance(integrator, dim):
     run = swimming(dim).run(0.2, tol=1e-6, integrator=integrator, output_step=0.05)
     assert abs(run["energy.external"][-1] - run["energy.external"][0]) > 0.1

@@ -68,6 +68,7 @@ def test_a_hauled_rope_is_braked_along_it(speed):
 
 
 @pytest.mark.parametrize("integrator", ["genalpha", "explicit"])
+@pytest.mark.slow_cases("explicit")
 def test_integrators_agree(integrator):
     runs = [blown(surface=-2.0, density=1000.0).run(0.1, **SETTINGS | {"integrator": name, "tol": 1e-6})
             for name in ("radau", integrator)]

@@ -54,6 +54,7 @@ def verified(family, folder, broken=("", "")):
 
 @pytest.mark.parametrize("damped", [False, True])
 @pytest.mark.parametrize("dim", [3, 2])
+@pytest.mark.slow_cases("2-True", "3-False")
 def test_a_new_law_is_derived_and_verified_by_its_spec_alone(tmp_path, damped, dim):
     family = next(family for family in families_of("magnet", magnet(damped)) if family.dim == dim)
     report = verified(family, tmp_path)

@@ -46,6 +46,7 @@ def test_sliding_mass_on_finer_meshes(elements, x, y):
     np.testing.assert_allclose(run["A.position"][-1], [x, y, 0], atol=1e-6)
 
 
+@pytest.mark.slow
 def test_cubic_and_quintic_cable_go_to_one_limit():
     """Flexible S1, s at t = 1: 1.3559, 1.3039, 1.3028, 1.3021 m with 3, 12, 24, 48 cubic elements, and 1.3024 with 12
     quintic ones. 1.30395346 is the other formulations' converged value for 12 cubic elements."""

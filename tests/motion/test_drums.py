@@ -38,6 +38,7 @@ def deck(**drive) -> fu.Scene:
 
 @pytest.mark.parametrize("drive", DRIVES)
 @pytest.mark.parametrize("scene", [hoist, deck])
+@pytest.mark.slow_cases("hoist-velocity", "hoist-brake", "hoist-held")
 def test_energy_and_the_agreement_of_integrators(scene, drive):
     runs = [scene(**DRIVES[drive]).run(**BRIEF, integrator=each) for each in INTEGRATORS]
     for run in runs:

@@ -105,6 +105,7 @@ def momenta(scene: fu.Scene, durations: tuple[float, ...]) -> list[np.ndarray]:
 
 @pytest.mark.parametrize("sheaves", [1, 2, 3])
 @pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.slow_cases("rough-3", "rough-2")
 def test_momenta_are_kept_to_rounding(kind, sheaves):
     """The bodies turn by up to 40 degrees, with fleet angles to .2 rad."""
     first, *others = momenta(free(sheaves, **KINDS[kind]), (5e-4, 0.05, 0.2))
@@ -141,6 +142,7 @@ def ends(kind: str, step: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.slow_cases("rough")
 def test_order_in_time_is_two(kind):
     coarse, middle, fine = (ends(kind, step) for step in (1e-3, 5e-4, 2.5e-4))
     first, second = np.abs(middle - coarse).max(), np.abs(fine - middle).max()

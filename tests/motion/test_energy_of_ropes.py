@@ -155,6 +155,7 @@ def test_energy_is_kept_under_step_control():
     assert balance(run) < 1e-12
 
 
+@pytest.mark.slow
 def test_steps_grow_in_number_with_the_root_of_tol(tmp_path):
     """From rest, where little has moved: velocities of the rope have no error with alternating signs from step to step,
     of which the estimate of errors would make ever shorter steps.

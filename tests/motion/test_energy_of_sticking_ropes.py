@@ -26,6 +26,7 @@ def off(run: fu.Run, exact: fu.Run) -> float:
 
 
 @pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.slow_cases("on a free body, turning", "plane, turning", "space")
 def test_energy_is_kept_to_rounding_where_ropes_stick_and_slide(scene):
     """Points stick and break loose; the differences from radau fall with tol."""
     settings = {"output_step": 0.01, "progress": False}
@@ -41,6 +42,7 @@ def test_energy_is_kept_to_rounding_where_ropes_stick_and_slide(scene):
 
 
 @pytest.mark.parametrize("scene", ["plane, held", "plane, turning", "space"])
+@pytest.mark.slow_cases("plane, held")
 def test_order_in_time_is_two_where_ropes_stick(scene):
     settings = {"output_step": 0.01, "progress": False}
     exact = SCENES[scene]().run(0.1, tol=1e-8, integrator="radau", **settings)

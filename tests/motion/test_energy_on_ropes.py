@@ -84,6 +84,7 @@ KINDS = ["spherical", "distance", "spring", "slide"]
 
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("kind", [*KINDS, "ram", "damper", "loads", "drag"])
+@pytest.mark.slow_cases("ram-3", "distance-3", "spring-3", "damper-3", "spherical-3", "loads-3", "slide-3")
 def test_energy_is_kept_and_agrees_with_radau(kind, dim):
     """The rope flows by .1 to .3 m past its nodes, which are .4 m apart."""
     run = loaded(kind, dim).run(0.4, output_step=0.05, step=1e-3, **STEP)

@@ -56,6 +56,7 @@ def spanned(dim: int = 2, *, load: tuple[float, float, float] = (0, -0.5, 0)) ->
     return scene
 
 
+@pytest.mark.slow
 def test_a_gripped_carriage_agrees_with_ropes_that_end_at_it():
     """The carriage moves by 4.2 m past ends of elements. In an element the kink at the grip is round: the error falls
     with the length of the elements, which here are 5 to 1.25 m.
@@ -84,6 +85,7 @@ def test_a_gripped_mass_agrees_with_one_on_a_cable(end):
 
 
 @pytest.mark.parametrize(("integrator", "bound"), [("radau", 1e-6), ("genalpha", 1e-6)])
+@pytest.mark.slow_cases("radau-1e-06")
 def test_passing_ends_of_elements_keeps_energy(integrator, bound):
     """A carriage passes several ends of elements of 1.25 m. The joint holds, and energy is explained."""
     run = hauled(elements=16).run(5.0, **SETTINGS | {"integrator": integrator})
@@ -95,6 +97,7 @@ def test_passing_ends_of_elements_keeps_energy(integrator, bound):
 
 
 @pytest.mark.parametrize("kind", ["spherical", "distance", "spring"])
+@pytest.mark.slow_cases("spherical", "distance")
 def test_integrators_agree(kind):
     """Those with Newton's method and the explicit one, whose equations for accelerations differ."""
     scene = spanned(load=(0, -2.0, 0) if kind != "spherical" else (0, -0.5, 0))

@@ -122,6 +122,7 @@ def passages():
             for each in (DEFAULT, DEFAULT.equivalent())]
 
 
+@pytest.mark.slow
 def test_a_passage_is_assessed(passages):
     jointed, masses = (catenary.assess(run) for run in passages)
     assert float(jointed["mean"][0]) == pytest.approx(float(masses["mean"][0]), rel=2e-3)

@@ -88,6 +88,7 @@ def test_a_mirrored_scene_has_the_same_numbers(swing):
 
 @pytest.mark.parametrize("rows", [30, 60, 95], ids=["before", "in contact", "after"])
 @pytest.mark.parametrize("integrator", ["radau", "genalpha"])
+@pytest.mark.slow_cases("radau-before", "radau-after")
 def test_resumed_bit_for_bit(tmp_path, integrator, rows):
     """The mode of the sheave is a part of the state: a run that is stopped at any time continues with its bits."""
     scene = over_a_peg(*LIGHT)
@@ -165,6 +166,7 @@ def struck(pull: float) -> fu.Scene:
     return scene
 
 
+@pytest.mark.slow
 def test_a_peg_on_a_body_keeps_momentum():
     """All of it, with that of the rope; the forces on the weights are opposite."""
     scene = struck(100.0)

@@ -30,6 +30,7 @@ def runs() -> dict[str, fu.Run]:
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.slow_cases("genalpha")
 def test_the_load_falls_freely(runs, integrator):
     """The momentum of all changes by the weight alone; energy balances, with what the event takes."""
     run = runs[integrator]

@@ -47,6 +47,7 @@ def test_a_planar_scene_and_its_spatial_twin():
     near(plane, space, 1e-4, "load.position")
 
 
+@pytest.mark.slow
 def test_integrators_and_ends_of_the_rope():
     """A rope out of the plane, whose drum is at the first or the last end of its route."""
     runs = [hanging("cable12", 0.05).run(**BRIEF, integrator=each) for each in INTEGRATORS]

@@ -40,6 +40,7 @@ def swing() -> fu.Run:
 
 # ---- a pendulum around a peg
 
+@pytest.mark.slow
 def test_friction_vanishes_with_its_coefficient():
     smooth, nearly = run_of(over_a_peg(*LIGHT)), run_of(pendulum(1e-7))
     assert whats(smooth) == whats(nearly) == TWICE[:2]
@@ -55,6 +56,7 @@ def test_a_held_rope_swings_as_without_friction(mu):
     assert np.abs(rough_peg.energy_balance().relative).max() < 1e-6
 
 
+@pytest.mark.slow
 def test_zones_converge(swing):
     errors = [np.abs(run_of(pendulum(zones=zones))["load.position"] - swing["load.position"]).max() for zones in (1, 8)]
     assert errors[1] < errors[0] < 2e-4
@@ -81,6 +83,7 @@ def test_results_beside_and_on_the_peg(swing):
 
 @pytest.mark.parametrize("rows", [30, 60, 95], ids=["before", "in contact", "after"])
 @pytest.mark.parametrize("integrator", ["radau", "genalpha"])
+@pytest.mark.slow_cases("radau-before", "radau-after", "genalpha-in contact")
 def test_resumed_bit_for_bit(tmp_path, integrator, rows):
     scene = pendulum(zones=2)
     settings = {"duration": 2.0, "output_step": 0.02, "tol": 1e-4, "integrator": integrator, "progress": False}
@@ -138,6 +141,7 @@ def test_a_wheel_slides_where_it_touches(friction):
     assert np.abs(run.energy_balance().relative).max() < 1e-6
 
 
+@pytest.mark.slow
 def test_a_wheel_turns_while_the_rope_is_away():
     """Its inertia, bearing and motor go on: I w' = M - c w."""
     inertia, damping, torque = 0.01, 0.05, 0.3

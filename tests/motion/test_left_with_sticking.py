@@ -21,6 +21,7 @@ def swing() -> fu.Run:
 
 # ---- the law
 
+@pytest.mark.slow
 def test_friction_vanishes_with_its_coefficient():
     smooth, nearly = (run_of(scene, 1.8) for scene in (over_a_peg(*LIGHT), pendulum(1e-7, 1, friction=sticky)))
     assert whats(smooth) == whats(nearly) == TWICE[:2]
@@ -38,6 +39,7 @@ def test_regularised_friction_converges(zones):
     assert errors[0] > 5 * errors[1] > 25 * errors[2] and errors[2] < 2e-7
 
 
+@pytest.mark.slow
 def test_a_held_rope_swings_as_without_friction(swing):
     """A rope without mass and stretch does not slide on the peg: friction does not change its motion."""
     smooth = run_of(over_a_peg(*LIGHT), 1.8)

@@ -130,6 +130,7 @@ def test_momenta_and_energy_of_free_bodies(sheave):
 
 
 @pytest.mark.parametrize("sheave", [*SHEAVES, "drum"])
+@pytest.mark.slow_cases("slipping", "drum")
 def test_integrators_agree(sheave):
     scene = free((1.0, -3.0, 2.0), first=winch(velocity=0.7)) if sheave == "drum" else free(
         (1.0, -3.0, 2.0), **SHEAVES[sheave])
@@ -154,6 +155,7 @@ def test_the_matrix_of_a_step_is_the_derivative_of_its_residual(sheave, h):
 
 
 @pytest.mark.parametrize("sheave", [*SHEAVES, "drum"])
+@pytest.mark.slow_cases("slipping", "driven")
 def test_a_turned_scene_gives_the_same(sheave):
     scene = free((0, -GRAVITY, 0), first=winch(velocity=0.7)) if sheave == "drum" else free(
         (0, -GRAVITY, 0), **SHEAVES[sheave])
@@ -184,6 +186,7 @@ def twins(**sheave) -> list[fu.Scene]:
 
 
 @pytest.mark.parametrize("sheave", [{}, {"friction": 2.0}, {"friction": 0.05}], ids=["smooth", "held", "slipping"])
+@pytest.mark.slow_cases("slipping")
 def test_a_planar_scene_and_its_spatial_twin(sheave):
     plane, space = (each.run(0.4, output_step=0.05, integrator="radau", **BRIEF | {"tol": 1e-9})
                     for each in twins(**sheave))

@@ -89,6 +89,7 @@ CASES = {
 @pytest.mark.filterwarnings("ignore:initial velocities broke a joint")
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 @pytest.mark.parametrize("case", CASES)
+@pytest.mark.slow_cases("ground-spherical-genalpha", "ground-revolute-genalpha")
 def test_it_is_kept_and_the_energy_balances(case, integrator):
     run = CASES[case]().run(0.02, output_step=0.002, tol=1e-4, integrator=integrator)
     assert run["joint.residual"].max() < 1e-9
@@ -99,6 +100,7 @@ def test_it_is_kept_and_the_energy_balances(case, integrator):
 @pytest.mark.filterwarnings("ignore:initial velocities broke a joint")
 @pytest.mark.parametrize("case", [pytest.param("ground-revolute", marks=pytest.mark.slow), "modal-universal",
                                   "rigid-prismatic", "cable-weld", "rider-tangent", "planar"])
+@pytest.mark.slow_cases("cable-weld")
 def test_integrators_agree(case):
     ends = [CASES[case]().run(0.05, output_step=0.05, tol=1e-6, integrator=name)["bar.nodes"][-1]
             for name in INTEGRATORS]

@@ -111,6 +111,7 @@ def references():
 
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("integrator", (*BY_TOL, *BY_STEP))
+@pytest.mark.slow_cases("explicit-damper never pushes")
 def test_laws_of_pieces(law, integrator, references):
     size = {"tol": 1e-8} if integrator in BY_TOL else {"step": 5e-4}
     run = hanging(1.5, **LAWS[law][0]).run(duration=1.0, output_step=0.02, integrator=integrator, **size)

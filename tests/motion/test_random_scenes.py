@@ -120,19 +120,19 @@ def check_statics(scene: fu.Scene) -> None:
         assert np.isfinite(rest[name]).all(), name
 
 
-@examples(60)
+@examples(25)
 @given(scenes(), INTEGRATORS, STEPS)
 def test_runs(scene, integrator, steps):
     check_run(*scene, integrator, steps)
 
 
-@examples(80)
+@examples(30)
 @given(scenes())
 def test_texts(scene):
     check_text(scene[1])
 
 
-@examples(120)
+@examples(50)
 @given(texts())
 def test_files(text):
     check_file(text)

@@ -17,6 +17,7 @@ from ringing_scenes import SCENES
     pytest.param("stretched pendulum, 25", 1e-3, 2600, marks=pytest.mark.slow),  # 7,210 before
     pytest.param("stretched pendulum, 50", 1e-3, 2000, marks=pytest.mark.slow),  # 3,352 before
 ])
+@pytest.mark.slow_cases("twisted rod, absolute_tol 1e-5-0.001-600")
 def test_vibrations_beside_what_counts_cost_no_steps(name, tol, steps):
     run = run_of(SCENES[name], tol=tol, **SCENES[name].settings)
     assert error_of(name, run) <= limit_of(name, tol)
@@ -29,6 +30,7 @@ def test_a_looser_tolerance_costs_no_more_steps_where_vibrations_die():
     assert steps == sorted(steps)
 
 
+@pytest.mark.slow
 def test_radau_on_trial_gives_way_to_the_explicit_method():
     """The motion of the rod is a vibrating wave; costs are counted, so that all machines decide alike."""
     subject = SCENES["twisted rod, all of its motion"]
@@ -126,6 +128,7 @@ def test_vibrations_that_act_on_a_turn_are_followed(spin, beside, tol):
     assert radius * angle(every["B.orientation"], exact["B.orientation"]) <= 1.6 * tol * moved
 
 
+@pytest.mark.slow
 def test_an_absolute_error_is_kept_and_reported():
     name = "stretched pendulum, 25"
     loose = run_of(SCENES[name], tol=1e-3, absolute_tol=4e-4, integrator="radau")

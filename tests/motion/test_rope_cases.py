@@ -23,6 +23,7 @@ def beyond_bars(key: str) -> list[str]:
 
 @pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
 @pytest.mark.parametrize("key", QUICK)
+@pytest.mark.slow_cases("two weights", "fleet angle with mass")
 def test_a_run_keeps_the_bars(key):
     assert beyond_bars(key) == []
 

@@ -252,6 +252,7 @@ def test_a_rope_far_lighter_and_far_heavier_than_its_loads(share, bound):
     explained(run, 1e-5)
 
 
+@pytest.mark.slow
 def test_forty_sheaves_in_a_row():
     """Without friction, over and under 40 sheaves: the acceleration of two weights and a light rope."""
     scene = fu.Scene(gravity=(0, -GRAVITY, 0))

@@ -67,6 +67,7 @@ def test_material_is_neither_made_nor_lost(made, integrator):
     assert (np.diff(run["rope.s"], axis=1) > 0).all()
 
 
+@pytest.mark.slow
 def test_a_hundred_thousand_steps():
     """A load swings below a sheave, on which its rope is laid down and taken up. Neither the balance of energy (1e-5 of
     what is exchanged) nor the tangent points (4e-15 m) nor the swing drift.

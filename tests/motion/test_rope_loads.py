@@ -52,6 +52,7 @@ def test_agrees_with_a_cable(load):
 
 
 @pytest.mark.parametrize("integrator", ["genalpha", "explicit"])
+@pytest.mark.slow_cases("explicit")
 def test_integrators_agree(integrator):
     """Work of the loads is external and explains the energy."""
     runs = [loaded().run(0.1, **SETTINGS | {"integrator": name, "tol": 1e-6, "output_step": 0.02})

@@ -33,6 +33,7 @@ def test_a_slow_reference_gives_the_published_numbers(case):
     assert off(case) == []
 
 
+@pytest.mark.slow
 def test_a_short_chain_is_within_the_bar():
     """26 masses: error 4e-4 m of a bar of 5e-4 m."""
     case = next(each for each in CASES if each.compute is heavy_atwood)

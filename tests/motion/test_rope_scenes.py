@@ -64,6 +64,7 @@ def test_the_slewing_crane_starts_at_rest():
     assert run["hook_1.tension_on"] == pytest.approx(12267.8, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_elevator():
     """At the tolerance of the scene bodies are within 1.3e-4 m of a run at a thousandth of it on half the elements."""
     text = (Path(fu.__file__).parent / "scenes" / "elevator.toml").read_text(encoding="utf-8").replace("\n#", "")
@@ -82,6 +83,7 @@ def test_elevator():
     assert not run.report["messages"]
 
 
+@pytest.mark.slow
 def test_aerial_tramway():
     """At its tolerance bodies are within 1e-2 m of a run on elements of a third and a quarter of the length."""
     text = (Path(fu.__file__).parent / "scenes" / "aerial_tramway.toml").read_text(encoding="utf-8").replace("\n#", "")

@@ -144,6 +144,7 @@ def test_three_sheaves(sheave):
 
 
 @pytest.mark.parametrize("sheave", ["smooth", "turning"])
+@pytest.mark.slow_cases("turning")
 def test_forty_sheaves(sheave):
     one, other = (row(40, **SHEAVES[sheave]).run(duration=0.02, output_step=0.02, tol=1e-5, integrator=each)
                   for each in ("genalpha", "radau"))

@@ -294,6 +294,7 @@ def test_a_span_that_becomes_too_short_for_its_fleet_angle_ends_the_run(elements
 
 
 @pytest.mark.parametrize("elements", [1, 4])
+@pytest.mark.slow_cases("4")
 def test_fleet_angles_up_to_18_degrees_in_motion(elements):
     """Meshes of 1, 4 and 16 elements agree within 2e-7 m."""
     scene = fu.Scene()

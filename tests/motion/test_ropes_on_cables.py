@@ -93,6 +93,7 @@ def wound_on(scene: fu.Scene, at, **given) -> fu.Scene:
 
 @pytest.mark.parametrize("element", ["cable8p", "beam12p"])
 @pytest.mark.parametrize("mass", [True, False], ids=["with mass", "without"])
+@pytest.mark.slow_cases("with mass-cable8p")
 def test_a_drum_and_an_end_on_a_cable(element, mass):
     """As on light bodies that are welded and hinged there."""
     on, by_bodies = bearer(element), bearer(element)

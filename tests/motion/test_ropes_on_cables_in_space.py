@@ -46,6 +46,7 @@ def swaying(element: str = "cable12", *, by_body: bool = False, **sheave) -> fu.
 
 @pytest.mark.parametrize("sheave", [SLIDING, TURNING, FRICTION, STICKING],
                          ids=["sliding", "turning", "driven", "sticking"])
+@pytest.mark.slow_cases("driven", "turning")
 def test_a_planar_scene_and_its_twin_in_space(sheave):
     """A torque turns the tangent of the cable. A driven wrap that slides is 3e-7 m off: in space its tangent points are
     those of chords.
@@ -59,6 +60,7 @@ def test_a_planar_scene_and_its_twin_in_space(sheave):
 
 @pytest.mark.parametrize(("element", "sheave"), [("cable12", SLIDING), ("cable12", FRICTION), ("cable12", STICKING),
                                                 ("beam24", SLIDING), ("beam24", FRICTION)])
+@pytest.mark.slow_cases("cable12-sheave1", "cable12-sheave2", "beam24-sheave4")
 def test_a_sheave_out_of_the_plane_is_one_on_a_light_body(element, sheave):
     run, other = (swaying(element, by_body=by_body, **sheave).run(**SETTINGS) for by_body in (False, True))
     assert apart(run, other) < 5e-7
@@ -87,6 +89,7 @@ def test_a_rope_without_mass_on_a_cable_is_one_on_a_light_body_there(element):
 
 
 @pytest.mark.parametrize("element", ["cable12", "beam24"])
+@pytest.mark.slow_cases("beam24")
 def test_a_drum_on_a_cable(element):
     """A drum winds up, and an end of its rope is on the cable, too."""
     on, by_body = (bearer(element, **ACROSS[element]) for _ in range(2))

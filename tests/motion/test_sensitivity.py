@@ -46,6 +46,7 @@ def simulate(scene: fu.Scene, duration: float, rows: int = 20, **settings) -> fu
 
 
 @pytest.mark.parametrize("integrator", ["auto", "radau"])
+@pytest.mark.slow_cases("radau")
 def test_a_cable_that_buckles_as_it_rebounds(integrator):
     """Its error is many times tol."""
     run = simulate(stretched(), 0.15, integrator=integrator, tol=1e-3)

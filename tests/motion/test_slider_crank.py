@@ -86,6 +86,7 @@ def test_the_scene_ends_where_it_was_published(tmp_path, validated):
 
 @pytest.mark.parametrize(("integrator", "tol", "place", "modes"), [("explicit", 1e-8, 1e-10, 5e-6),
                                                                     ("radau", 1e-6, 5e-8, 6e-3)])
+@pytest.mark.slow_cases("radau-1e-06-5e-08-0.006")
 def test_the_scene_from_an_undeformed_start_runs_as_the_kernels_do(tmp_path, integrator, tol, place, modes):
     """With the correct axial mass, not 15 times of it."""
     run = machine(tmp_path, axial_mass=1.0).run(0.1, output_step=0.01, tol=tol, integrator=integrator)

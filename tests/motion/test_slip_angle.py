@@ -23,6 +23,7 @@ def weights(ratio: float, mu: float = 0.3, **sheave) -> fu.Scene:
 
 @pytest.mark.parametrize("zones", [1, 8])
 @pytest.mark.parametrize("ratio", [1.2, 1 / 1.2, 2.0])
+@pytest.mark.slow_cases("2.0-8", "1.2-8")
 def test_weights_that_creep(ratio, zones):
     """Friction holds them: over ln(T2/T1)/mu it is at its limit."""
     run = weights(ratio, zones=zones).run(1.0, output_step=0.5, tol=1e-5, integrator="radau")
@@ -51,6 +52,7 @@ def test_without_friction_nothing_and_at_the_limit_all():
     assert rest["top.slip_angle"] == pytest.approx(rest["top.wrap_angle"], rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_belt_slides_over_a_part_of_its_pulleys(tmp_path):
     """The reference slides over 145.573 degrees of both pulleys; the file has the same."""
     x = np.clip((np.linspace(0, 2.5, 501) - 1) / 0.5, 0, 1)

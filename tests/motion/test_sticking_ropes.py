@@ -49,6 +49,7 @@ def hung(mu: float) -> fu.Scene:
 # ---- the law
 
 @pytest.mark.parametrize("sheave", SHEAVES)
+@pytest.mark.slow_cases("held")
 def test_energy_and_the_agreement_of_integrators_where_ropes_stick(sheave):
     """Slip that reverses, and sticks between. Differences: 9e-11 m of .05 m; balance off by 2e-9 of the exchange."""
     runs = [swing(**SHEAVES[sheave]).run(**BRIEF, integrator=each) for each in INTEGRATORS]
@@ -60,6 +61,7 @@ def test_energy_and_the_agreement_of_integrators_where_ropes_stick(sheave):
     assert slip[0] > 0.08 and abs(slip[1]) < 1e-2 and runs[0]["energy.dissipated"][-1] > 1e-5
 
 
+@pytest.mark.slow
 def test_two_weights_without_creep():
     """The mass of the rope is left out by half of it."""
     found = []
@@ -82,6 +84,7 @@ CAPSTANS = [(0.1, 0, 1), (0.1, 0, -1), *(pytest.param(*each, marks=pytest.mark.s
 
 
 @pytest.mark.parametrize(("mu", "turns", "way"), CAPSTANS)
+@pytest.mark.slow_cases("0.1-0--1")
 def test_capstans_hold_below_the_limit_and_slide_above(mu, turns, way):
     """A force that rises to exp(mu theta) times the other one, 1e-5 less or more."""
     theta, T, times = np.pi * (1 + 2 * turns), 100.0, np.linspace(0, 1, 201)
@@ -204,6 +207,7 @@ def test_three_sticking_sheaves_and_a_block():
     assert [sheave.sticks for sheave in block.sheaves] == [True]
 
 
+@pytest.mark.slow
 def test_space_mirror_axes_and_the_route_backwards():
     def scene(mirror=1, backwards=1, element="cable8p"):
         found = fu.Scene(gravity=(0, -G, 0))

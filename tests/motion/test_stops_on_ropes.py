@@ -28,6 +28,7 @@ def towards_the_anchor(stop: object, friction: object = None) -> list[fu.Scene]:
 @pytest.mark.parametrize(("stop", "friction", "what"), [
     (HARD, None, ["struck the end"]), (fu.HardStop(restitution=0), 0.1, ["struck the end"]),
     (SOFT, None, ["entered the buffer", "left the buffer"]), ("leave", None, ["left"])])
+@pytest.mark.slow_cases("stop1-0.1-what1")
 def test_agrees_with_a_stop_on_a_cable(stop, friction, what):
     """Beside a sheave of 1 cm and a rope of 1 cm beyond it, to which the difference is in proportion."""
     runs = [scene.run(0.8, **SETTINGS | {"tol": 1e-6}) for scene in towards_the_anchor(stop, friction)]
@@ -62,6 +63,7 @@ def struck(stop: object) -> fu.Scene:
 
 @STOPS
 @pytest.mark.parametrize("integrator", ["genalpha", "explicit"])
+@pytest.mark.slow_cases("genalpha-hard", "explicit-buffer")
 def test_integrators_agree(integrator, stop):
     scene = struck(stop)
     run, other = (scene.run(0.16, **SETTINGS | {"tol": 1e-6, "output_step": 0.02, "integrator": name})
@@ -80,6 +82,7 @@ def test_momentum_passes_to_the_body_at_the_anchor(stop):
 
 
 @pytest.mark.parametrize("integrator", ["radau", "genalpha"])
+@pytest.mark.slow_cases("genalpha")
 def test_a_rider_leaves_the_rope_at_a_sheave(integrator):
     """It then falls freely."""
     scene = hauled(speed=0.5, along=2.5, s=23.5, at_end="leave")

@@ -65,6 +65,7 @@ def momenta(scene: fu.Scene, run, k: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("sheave", ALL)
+@pytest.mark.slow_cases("turning, sticking")
 def test_momenta_and_energy_of_free_bodies(sheave):
     """The sheave's body turns by 20 degrees, with fleet angles to .2 rad; on the explicit run both are to 1e-10."""
     scene, runs = free(**ALL[sheave]), []

@@ -125,6 +125,7 @@ def thrown(far: int) -> fu.Scene:
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 @pytest.mark.parametrize("step", [None, 1e-3])
+@pytest.mark.slow_cases("None-energy")
 def test_pairs_that_are_far_apart_change_no_bit(integrator, step):
     given = {"step": step} if step else {"tol": 1e-4}
     with_far, without = (thrown(far).run(0.5, output_step=0.1, integrator=integrator, **given) for far in (5, 0))

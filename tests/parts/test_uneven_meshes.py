@@ -68,6 +68,7 @@ def test_a_cantilever_graded_to_its_clamp(validated):
 
 
 @pytest.mark.parametrize("integrator", ["genalpha", "explicit", "energy"])
+@pytest.mark.slow_cases("energy")
 def test_a_slide_crosses_elements_of_unequal_lengths(integrator):
     """The path of the rider is as accurate as on equal elements, and three times as accurate on half the lengths."""
     nodes = np.array((0, 0.1, 0.25, 0.45, 0.6, 0.85, 1.0))

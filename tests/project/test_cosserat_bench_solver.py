@@ -47,6 +47,7 @@ def test_errors(name, elements, options, limits):
 
 
 @pytest.mark.parametrize(("drop", "elements", "error"), [(0.05, 20, 1e-4), (0.1, 40, 1e-5)])
+@pytest.mark.slow_cases("0.1-40-1e-05")
 def test_crossing(drop, elements, error):
     """With nodes at the points of the reference and at the contact, only the error of the mesh remains."""
     result = scored("crossing", elements, values={"drop": drop})

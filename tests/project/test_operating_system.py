@@ -55,6 +55,7 @@ def run(settings: str = ', save="x.nc"', after: str = "") -> str:
     return RUN.format(settings=settings, after=after)
 
 
+@pytest.mark.slow
 def test_results_are_the_same_bits(tmp_path):
     for name, before in (("with", "import funicular as fu"), ("without", WITHOUT)):
         (tmp_path / name).mkdir()

@@ -198,6 +198,7 @@ def test_every_quick_question_of_every_element():
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("quick_pictures")
 class TestPictures:
     """A class is tested beside others of its file, by another process."""
 

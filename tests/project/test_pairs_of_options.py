@@ -117,6 +117,7 @@ def outside(tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("quick_pictures")
 @pytest.mark.parametrize("command", [name for name in VALUES if name != "bench"])
 def test_every_bundled_scene_with_every_option(command, outside):
     errors = covered(command, list(fu.bundled_scenes()), outside)

@@ -237,6 +237,7 @@ RESTS = ["loads on cable12", "loads on beam24", "section of beam24", "cable tied
 
 @pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
 @pytest.mark.parametrize("name", RESTS)
+@pytest.mark.slow_cases("loads on beam24")
 def test_at_rest(name):
     """In equilibrium, riders are driven; otherwise their slides would move to the lowest point."""
     scene = SCENES[name]()

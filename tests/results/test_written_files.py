@@ -75,6 +75,7 @@ LEFT = {"bench.csv": 200}
 
 
 @pytest.mark.parametrize("name", WRITERS)
+@pytest.mark.slow_cases("rigid.html", "view.png", "film.mp4")
 def test_a_full_disk_leaves_the_older_file(name, run, measured, tmp_path):
     path = tmp_path / name
     WRITERS[name](path, run, measured)

@@ -82,6 +82,7 @@ BODIES = [f"{carrier} {load}" for carrier in ("joint", "slide", "modal") for loa
 @pytest.mark.parametrize("make", [*((lambda p, case=case: beam(*case, p)) for case in CABLES),
                                   *((lambda p, kind=kind: bodies(kind, p)) for kind in BODIES)],
                          ids=[*map("-".join, CABLES), *BODIES])
+@pytest.mark.slow_cases("joint moment-settings1", "joint follower-settings1", "modal follower-settings1")
 def test_every_state_is_in_equilibrium_under_its_part_of_all_loads(make, settings):
     state = make(1.0).equilibrium(**settings)
     assert len(state.path) >= 3
@@ -133,6 +134,7 @@ def lees_frame(load: float, follower: bool, elements: int, beam: bool = False) -
 
 @pytest.mark.parametrize(("follower", "load", "nominal"), [
     (False, 18532, 2e4), (False, 18532, 1e6), (True, 35447, 4e4), (True, 35447, 1e6)])
+@pytest.mark.slow_cases("True-35447-1000000.0")
 def test_lees_frame(follower, load, nominal, validated):
     """Lee, Manuel & Rossow, J. Eng. Mech. Div. 94 (1968) 417-442; both limit loads agree with other codes."""
     with warnings.catch_warnings():

@@ -14,6 +14,7 @@ def weight(scene):
 
 
 @pytest.mark.parametrize(("mu", "part"), [pytest.param(0.1, 0.7, marks=pytest.mark.slow), (0.1, 0.95), (0.3, 0.9)])
+@pytest.mark.slow_cases("0.3-0.9")
 def test_friction_holds_a_rope_on_its_drum_below_the_capstans_limit(mu, part):
     """With 40 elements it fell off, and the state was said to be stable."""
     scene = capstan(part * heaviest(mu), mu)
@@ -27,6 +28,7 @@ def test_friction_holds_a_rope_on_its_drum_below_the_capstans_limit(mu, part):
     assert np.abs(run["rope.position"][-1] - rest["rope.position"]).max() < 1e-5
 
 
+@pytest.mark.slow
 def test_the_bundled_drum_holds_its_rope():
     rest = load_scene("rope_over_drum").equilibrium()
     assert rest.stable and rest["held.touching"] > 0.13

@@ -50,6 +50,7 @@ TO = ["wire@2.05.position.{y}", "wire@0.force.{x}", "wire@4.1.force.{y}", "A.pos
 @pytest.mark.parametrize(("element", "axes", "joined"), [
     ("cable8p", FLAT, False), ("cable8p", UPRIGHT, False), ("cable12", SPATIAL, False), ("beam24", SPATIAL, False),
     ("cable8p", FLAT, True)])
+@pytest.mark.slow_cases("beam24-axes3-False")
 def test_loads_weights_and_supports_have_the_derivatives_of_differences_of_scenes(element, axes, joined, monkeypatch):
     scene = strung(element, axes, joined)
     x, y = ("xyz"[int(np.argmax(np.abs(axes[:, k])))] for k in range(2))

@@ -20,6 +20,7 @@ def crossing_before_an_output(delta: float, **settings):
 
 
 @pytest.mark.parametrize("settings", [{"step": 1e-3}, {"step": 1e-3, "spectral_radius": 1.0}, {"tol": 1e-4}])
+@pytest.mark.slow_cases("settings1", "settings2")
 def test_crossing_a_node_just_before_an_output_time(settings):
     """In the rest of the step, 1e-8 to 1e-11 s, accelerations are rounding; continued from there, the energy was 14 %
     off and the position 0.06 m.

@@ -63,6 +63,7 @@ def test_compressed_and_straight_is_unstable(membrane):
     np.testing.assert_allclose(state["rope.position"][:, 1:], 0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_two_thousand_elements():
     """A sparse factorisation counts; a dense one would take 1.2 GB and minutes."""
     u = np.linspace(0, 1, 41)[:, None]

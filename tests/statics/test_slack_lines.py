@@ -25,6 +25,7 @@ def pull(rest: fu.Equilibrium, cable: str) -> float:
 
 @pytest.mark.parametrize("mesh", [100, 200, *(pytest.param(n, marks=pytest.mark.slow) for n in (450, 600, 1000))])
 @pytest.mark.parametrize("name", LAZY_WAVES)
+@pytest.mark.slow_cases("80 m-200", "200 m-100")
 def test_lazy_waves(name, mesh, validated):
     """Forces and curvatures of another program; 450 and 600 elements once ended at unstable states."""
     data = LAZY_WAVES[name]
@@ -74,6 +75,7 @@ def in_space(flow: float) -> fu.Scene:
 
 
 @pytest.mark.parametrize("flow", [0.0, 0.5])
+@pytest.mark.slow_cases("0.0")
 def test_in_space_it_is_the_state_of_relax(flow):
     rest, other = in_space(flow).equilibrium(), in_space(flow).relax()
     assert rest.stable

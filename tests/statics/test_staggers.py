@@ -56,6 +56,7 @@ def test_supports_bear_the_tension_times_its_change_of_direction(of_messenger):
     assert errors[1] < 0.2 * errors[0]
 
 
+@pytest.mark.slow
 def test_with_little_bending_an_arm_bears_what_a_string_does():
     form = catenary.form(line55(2, bending=0.01, stagger=SIDE), (0.25, 0.5))
     assert -catenary.scene(form).equilibrium()["steady_arm_1.force"][2] == pytest.approx(
@@ -83,6 +84,7 @@ def passages():
     return runs
 
 
+@pytest.mark.slow
 def test_the_wire_wanders_along_the_collector(passages):
     run = passages[0]
     along, x = run["pantograph_contact.s_b"], run["pantograph_1.position"][:, 0]

@@ -88,12 +88,14 @@ def test_run_that_starts_at_another_place_than_its_state_of_rest_is_refused():
 @pytest.mark.filterwarnings("ignore:.*no step of 0.05 s was possible")
 @pytest.mark.parametrize("settings", [{"integrator": "radau"}, {"integrator": "genalpha", "step": 0.05}],
                          ids=["radau", "genalpha"])
+@pytest.mark.slow_cases("joint-radau", "motion-genalpha")
 def test_runs_follow_the_angle(kind, settings):
     twisted = rod(kind, Ramp(start=0, end=1, before=0, after=7.0), damping_time=0.05)
     run = twisted.run(duration=1.5, output_step=0.5, tol=1e-3, **settings)
     assert_allclose(twist(kind, run)[-1], 7.0, rtol=1e-4)
 
 
+@pytest.mark.slow_cases("joint")
 def test_resumed_run_follows_the_angle(tmp_path, kind):
     twisted, path = rod(kind, Ramp(start=0, end=1, before=0, after=7.0), damping_time=0.05), tmp_path / "run.nc"
     given = {"duration": 1.5, "output_step": 0.1, "tol": 1e-3, "save": path}

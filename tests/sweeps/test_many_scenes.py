@@ -57,6 +57,7 @@ SHAPES = {
 
 @pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
 @pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.slow_cases("tied")
 def test_bits_of_each_by_itself(shape):
     alone = [scene.run(**SETTINGS) for scene in variants(SHAPES[shape])]
     assert alone[0].time[-1] == DURATION
@@ -67,6 +68,7 @@ def test_bits_of_each_by_itself(shape):
 
 @pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
 @pytest.mark.parametrize("threads", [1, 2, 7, None])
+@pytest.mark.slow_cases("1", "7")
 def test_mixed_shapes_in_order(threads):
     makers = [make for name in ("rider", "joints", "planar", "rider", "stick") for make in [SHAPES[name]]] * 2
     alone = [make().run(**SETTINGS) for make in makers]
