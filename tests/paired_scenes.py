@@ -250,11 +250,12 @@ def _blown(on: Site) -> None:
     on.scene.drag("hoist", fluid="air", normal=1.2, name="wind_on_rope")
 
 
-def _leant(on: Site) -> None:
+def _leant(on: Site, friction: object = 0.2) -> None:
     """Hold a rough bollard beside the rope's first span."""
     x, y, _ = on.below(1.0, 0)
     on.scene.surface("bollard_side", fu.Cylinder(1.0, 1.0), on=on.held("bollard", (x + 0.104, y + 0.071, 0)))
-    on.scene.contact("hoist", "bollard_side", stiffness=1e3, damping=0.1, radius=0.002, friction=0.2, name="lean")
+    on.scene.contact("hoist", "bollard_side", stiffness=1e3, damping=0.1, radius=0.002, friction=friction,
+                     name="lean")
 
 
 ROPES: dict[str, Callable[[Site], object]] = {
@@ -270,6 +271,7 @@ ROPES: dict[str, Callable[[Site], object]] = {
     "rope on a drum over a body": partial(_rope, carried=True, first=_drum()),
     "loaded rope": partial(_rope, also=lambda on: on.scene.force("hoist", s=0.1, value=(0.0, -0.1, 0))),
     "rope on a rough body": partial(_rope, also=_leant),
+    "rope that sticks to a body": partial(_rope, also=partial(_leant, friction=STUCK)),
     "rope in a wind": partial(_rope, also=_blown),
     "belt": _belt,
     "rope without mass": partial(_rope, mass=False),
