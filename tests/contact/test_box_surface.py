@@ -100,6 +100,7 @@ def test_the_force_of_an_edge_on_a_rope_is_its_tension_times_its_turn():
     assert edge_error(element="cable12") < 1e-3
 
 
+@pytest.mark.slow
 def test_in_a_planar_scene_a_box_is_a_rectangle():
     scene, _ = over_the_edge(elements=30)
     here = scene.equilibrium()
@@ -109,6 +110,7 @@ def test_in_a_planar_scene_a_box_is_a_rectangle():
     assert np.abs(alike["rope.position"] - here["rope.position"]).max() < 1e-12
 
 
+@pytest.mark.slow
 def test_a_turned_scene_has_the_same_forces():
     scene, _ = over_the_edge(elements=60)
     here = scene.equilibrium()["contact_1.force"]

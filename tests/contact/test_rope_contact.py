@@ -82,6 +82,7 @@ def test_mirrored():
     assert np.abs(runs[1] - runs[0] * [-1, 1, 1]).max() < 1e-8
 
 
+@pytest.mark.slow
 def test_a_planar_scene_and_its_twin_in_space():
     runs = [laid(dim).run(0.3, **SETTINGS) for dim in (2, 3)]
     assert np.abs(runs[0]["weight.position"] - runs[1]["weight.position"]).max() < 1e-3

@@ -83,6 +83,7 @@ def hauled(mu: float, *, elements: int = 12, dim: int = 2, weights=(20.0, 12.0),
 
 
 @pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.slow_cases("3")
 def test_a_hauled_rope_has_the_friction_of_its_weight(dim):
     """The material moves past the nodes, which stay. Two weights then accelerate by the difference of their weights, of
     the ropes beside them, and mu times the force on the ground.

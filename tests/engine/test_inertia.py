@@ -21,7 +21,7 @@ def constraints(n, m, rng):
 
 @pytest.mark.parametrize("n", [30, 210])  # dense and sparse
 @pytest.mark.parametrize("m", [0, 1, 9])
-@pytest.mark.slow_cases("1-210", "9-210")
+@pytest.mark.slow_cases("1-210", "9-210", "0-210")
 def test_counts_what_dense_eigenvalues_say(n, m):
     rng = np.random.default_rng(n + m)
     for negatives in (1, 2, n // 3, n - 1):

@@ -242,7 +242,7 @@ def accurate(dim):
 
 
 @pytest.mark.parametrize(("integrator", "dim"), IN_WATER)
-@pytest.mark.slow_cases("explicit-3", "energy-2")
+@pytest.mark.slow_cases("explicit-3", "energy-2", "genalpha-2")
 def test_the_energy_of_the_water_is_in_the_balance(integrator, dim):
     run = swimming(dim).run(0.2, tol=1e-6, integrator=integrator, output_step=0.05)
     assert abs(run["energy.external"][-1] - run["energy.external"][0]) > 0.1

@@ -190,7 +190,7 @@ def accurate(dim):
 
 
 @pytest.mark.parametrize(("integrator", "dim"), IN_WATER)
-@pytest.mark.slow_cases("explicit-3", "energy-2")
+@pytest.mark.slow_cases("explicit-3", "energy-2", "genalpha-2")
 def test_what_the_flow_gives_and_drag_takes_is_in_the_energy_balance(integrator, dim):
     run = swimming(dim).run(0.6, tol=1e-6, integrator=integrator, output_step=0.05)
     assert run["energy.dissipated"][-1] > 0.5 and abs(run["energy.external"][-1]) > 0.5

@@ -58,6 +58,7 @@ def test_momenta_are_kept_where_ropes_stick_on_free_bodies():
     assert max(np.abs(other - first).max() for other in others) < 1e-12 * np.abs(first).max()
 
 
+@pytest.mark.slow
 def test_a_rope_that_sticks_does_not_creep():
     """A weight at rest on a rope that friction holds: the rope does not move over the sheave in 2000 steps."""
     run = hung(0.9).run(2.0, output_step=0.2, step=1e-3, integrator="energy", progress=False)

@@ -17,6 +17,7 @@ def pendulum(element="cable8p", elements=4):
 
 
 @pytest.mark.parametrize("integrator", ["explicit", "radau"])
+@pytest.mark.slow_cases("radau")
 def test_a_run_goes_on_from_the_state_of_another(integrator):
     whole = one_rider().run(duration=0.2, tol=1e-9, output_step=0.1, integrator=integrator)
     rest = one_rider().run(duration=0.1, tol=1e-9, output_step=0.1, integrator=integrator, initial=whole.at(0.1))

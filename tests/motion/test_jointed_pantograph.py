@@ -98,6 +98,7 @@ def test_at_rest_it_presses_as_virtual_work_says(pantograph):
     assert 1e-3 < abs(collector) < 0.03
 
 
+@pytest.mark.slow
 def test_small_motions_are_those_of_the_equivalent_masses():
     """A small pulse on the collector at rest: the motions differ by its square."""
     found = []

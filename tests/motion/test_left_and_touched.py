@@ -79,6 +79,7 @@ def test_integrators_agree(integrator):
     assert np.abs(one["load.position"] - other["load.position"]).max() < 1e-4
 
 
+@pytest.mark.slow
 def test_a_mirrored_scene_has_the_same_numbers(swing):
     """Within a tenth of Newton's tolerance, 1.5e-7: rounding may decide on one iteration more."""
     run = over_a_peg(*LIGHT, mirrored=True).run(4.5, output_step=0.05, tol=1e-5, integrator="radau", progress=False)

@@ -62,6 +62,7 @@ def test_zones_converge(swing):
     assert errors[1] < errors[0] < 2e-4
 
 
+@pytest.mark.slow
 def test_a_mirrored_pendulum(swing):
     run = run_of(pendulum(mirrored=True))
     assert run["load.position"] * [-1, 1, 1] == pytest.approx(swing["load.position"], abs=1e-9)

@@ -81,6 +81,7 @@ def test_resumed_bit_for_bit(tmp_path):
 
 # ---- in space
 
+@pytest.mark.slow
 def test_motion_in_the_plane_of_the_groove_is_that_in_the_plane():
     plane, space = (run_of(pendulum_in_space(**given, **sticky(zones=1)), 1.2) for given in (
         {"element": "cable8p"}, {"axes": TURN}))
@@ -94,6 +95,7 @@ def test_a_pendulum_beside_the_plane_of_the_groove():
     assert whats(run) == TWICE[:2] and np.abs(run.energy_balance().relative).max() < 1e-6
 
 
+@pytest.mark.slow
 def test_regularised_friction_converges_in_space():
     """A load that is thrown off."""
     run, *others = (run_of(thrown(friction, 0.01), 0.1, tol=1e-7) for friction in (

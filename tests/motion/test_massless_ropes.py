@@ -303,6 +303,7 @@ def test_forty_one_sheaves():
 # ---- beside ropes with mass
 
 @pytest.mark.parametrize("kind", ["smooth", "drum"])
+@pytest.mark.slow_cases("smooth")
 def test_a_rope_of_little_mass_tends_to_none(kind):
     """Ropes of 1e-5 kg/m over a sheave without friction, and hauled in by a drum."""
     def run(mass):

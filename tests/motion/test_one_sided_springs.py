@@ -182,6 +182,7 @@ def between_two_droppers(speed, preload):
 
 
 @pytest.mark.parametrize("integrator", (*BY_TOL, *BY_STEP))
+@pytest.mark.slow_cases("energy")
 def test_a_pair_of_droppers_unloads_and_reloads_as_sines(integrator):
     (slack, taut, half), place = between_two_droppers(0.6, 0.02)
     scene = fu.Scene(gravity=(0, 0, 0))

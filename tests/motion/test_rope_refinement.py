@@ -19,6 +19,7 @@ def test_zones_converge():
     check(ZONES, 1.9, 8.1e-4)
 
 
+@pytest.mark.slow
 def test_steps_converge():
     """Order 2 of genalpha."""
     check(GENALPHA, 1.9, 3e-7)

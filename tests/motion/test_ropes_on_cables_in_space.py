@@ -46,7 +46,7 @@ def swaying(element: str = "cable12", *, by_body: bool = False, **sheave) -> fu.
 
 @pytest.mark.parametrize("sheave", [SLIDING, TURNING, FRICTION, STICKING],
                          ids=["sliding", "turning", "driven", "sticking"])
-@pytest.mark.slow_cases("driven", "turning")
+@pytest.mark.slow_cases("driven", "turning", "sticking")
 def test_a_planar_scene_and_its_twin_in_space(sheave):
     """A torque turns the tangent of the cable. A driven wrap that slides is 3e-7 m off: in space its tangent points are
     those of chords.

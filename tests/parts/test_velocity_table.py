@@ -84,7 +84,7 @@ def accurate():
 
 
 @pytest.mark.parametrize("integrator", ["genalpha", "energy", "explicit", "radau"])
-@pytest.mark.slow_cases("energy")
+@pytest.mark.slow_cases("energy", "genalpha")
 def test_all_integrators_run_in_it(integrator):
     run = resting(table()).run(0.8, tol=1e-6, integrator=integrator, output_step=0.1)
     assert np.abs(run["wire.nodal_vectors"] - accurate()["wire.nodal_vectors"]).max() < 1e-5

@@ -156,6 +156,7 @@ def test_lees_frame(follower, load, nominal, validated):
 
 @pytest.mark.parametrize("elements", [10, pytest.param(40, marks=pytest.mark.slow)])
 @pytest.mark.parametrize(("follower", "load"), [(False, 18544.8), (True, 35393.0)])
+@pytest.mark.slow_cases("True-35393.0-10")
 def test_lees_frame_that_shears(follower, load, elements, validated):
     """Against Reissner's frame with the shear factor 10 (1 + nu)/(12 + 11 nu); the follower force rotates with the
     section.

@@ -25,7 +25,7 @@ def pull(rest: fu.Equilibrium, cable: str) -> float:
 
 @pytest.mark.parametrize("mesh", [100, 200, *(pytest.param(n, marks=pytest.mark.slow) for n in (450, 600, 1000))])
 @pytest.mark.parametrize("name", LAZY_WAVES)
-@pytest.mark.slow_cases("80 m-200", "200 m-100")
+@pytest.mark.slow_cases("80 m-200", "200 m-100", "200 m-200")
 def test_lazy_waves(name, mesh, validated):
     """Forces and curvatures of another program; 450 and 600 elements once ended at unstable states."""
     data = LAZY_WAVES[name]
