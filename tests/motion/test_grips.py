@@ -93,7 +93,7 @@ def test_passing_ends_of_elements_keeps_energy(integrator, bound):
     assert np.abs(run["carriage.position"] - reference["carriage.position"]).max() < 5e-5
     assert run["grip.residual"].max() < 1e-9
     assert np.abs(run.energy_balance().relative).max() < bound
-    assert not run.report["messages"]
+    assert [each.partition(":")[2][:15] for each in run.report["messages"]] == [' drum "winch": ']  # it bends
 
 
 @pytest.mark.parametrize("kind", ["spherical", "distance", "spring"])

@@ -30,7 +30,7 @@ def test_the_command_line_loads_none_either():
     assert not loaded & (HEAVY - {"rich", "typer"})
 
 
-@pytest.mark.parametrize("scene", ["paper51", "cable_car", "belt_drive"])
+@pytest.mark.parametrize("scene", ["paper51", "belt_drive", "block_and_tackle"])
 def test_a_run_loads_no_more_of_scipy_than_its_table_of_lapack(scene):
     """The rest of SciPy and numpy.random take longer to load than the first scene takes to run."""
     loaded = set(python("import sys, warnings, funicular; warnings.simplefilter('ignore'); "

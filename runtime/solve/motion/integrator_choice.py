@@ -325,7 +325,7 @@ def _on_wheels(mass: Any, rows: Any) -> Callable[[np.ndarray], np.ndarray]:
     k, n = rows.shape
     if isinstance(mass, np.ndarray):
         return np.linalg.inv(np.block([[mass, rows.T], [rows, np.zeros((k, k))]]))[:n, :n].dot
-    from scipy.sparse import block_array, csc_array
+    from scipy.sparse import block_array, csc_array  # slow to import, and small scenes do without
     from scipy.sparse.linalg import splu
 
     solve = splu(csc_array(block_array([[mass, rows.T], [rows, None]]))).solve
