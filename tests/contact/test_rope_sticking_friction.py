@@ -93,6 +93,7 @@ def carried_by_delays(times: np.ndarray, n: int = 8000) -> tuple[np.ndarray, flo
 
 
 @pytest.mark.parametrize(("dim", "sense"), [(2, 1), (2, -1), (3, 1)])
+@pytest.mark.slow_cases("2--1", "3-1")
 def test_the_stretch_flows_with_the_material(dim, sense):
     """A sled that the rope carries along swings, and its swing decays as stretched material leaves, within 3 periods
     and 1.25 passages of the span. A stretch that stayed at the points of contact would not let it decay.
@@ -138,6 +139,7 @@ def pulled(force: float, normal: float) -> float:
 
 
 @pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.slow_cases("3")
 def test_a_rope_that_is_pulled_and_let_go(dim):
     """Tension of one end rises below mu N, and falls back: as it falls, displacements are twice those by half of the
     force (Masing), and a part stays. The free length beside the ground stretches, too.
@@ -191,6 +193,7 @@ def test_elements_converge_as_the_rope_flows_back_and_forth():
 
 @pytest.mark.parametrize("integrator", ["radau", "genalpha", "explicit"])
 @pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.slow_cases("2-radau", "3-genalpha", "3-explicit")
 def test_energy_on_a_moving_body(dim, integrator):
     """The sled is thrown back by the rope, which drags it along. Integrators agree on what friction dissipates."""
     settings = SETTINGS | {"duration": 0.3, "tol": 1e-5, "output_step": 0.01}
