@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .numbering import ranges
+
 
 @dataclass(frozen=True)
 class Combinations:
@@ -35,5 +37,5 @@ class Combinations:
     def entries(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the entries of some rows: place in `rows`, unknown, coefficient."""
         first, counts = self.start[rows], self.start[rows + 1] - self.start[rows]
-        at = np.repeat(first - np.cumsum(counts) + counts, counts) + np.arange(counts.sum())
+        at = ranges(first, counts)
         return np.repeat(np.arange(len(rows)), counts), self.unknown[at], self.value[at]

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array, triu
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-from .numbering import Incidence, Numbering, extents, numbered
+from .numbering import Incidence, Numbering, extents, numbered, ranges
 
 SOLVE_WEIGHT = 30
 """Weight of solves per factorisation: about ten, three times as slow per operation, as they read from memory."""
@@ -35,15 +35,9 @@ def ordered(of_elements: bytes, of_dofs: bytes, shape: tuple[int, int]) -> Numbe
                key=lambda one: _operations(one, entries))
 
 
-def _dofs(elements: np.ndarray) -> np.ndarray:
-    """Return the dofs of each element, one element after the other."""
-    counts = elements[:, 1]
-    return np.repeat(elements[:, 0] - np.cumsum(counts) + counts, counts) + np.arange(counts.sum())
-
-
 def _incidence_matrix(elements: np.ndarray, made_of: np.ndarray, shape: tuple[int, int]) -> csr_array:
     """Return (elements, unknowns): 1 where an element has an unknown; made_of (k, 2): a dof, an unknown of it."""
-    dofs = _dofs(elements)
+    dofs = ranges(*elements.T)  # of each element, one element after the other
     has = csr_array((np.ones(len(dofs)), dofs, np.append(0, np.cumsum(elements[:, 1]))),
                     shape=(len(elements), shape[0]))
     incidence = has @ coo_array((np.ones(len(made_of)), (made_of[:, 0], made_of[:, 1])), shape=shape).tocsr()

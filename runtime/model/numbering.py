@@ -29,6 +29,11 @@ class Incidence:
     n_elements: int
 
 
+def ranges(first: np.ndarray, counts: np.ndarray) -> np.ndarray:
+    """Return the numbers of ranges, one range after the other; each has its first number and its count."""
+    return np.repeat(first - np.cumsum(counts) + counts, counts) + np.arange(counts.sum())
+
+
 def as_drawn(elements: np.ndarray, unknown_of_dof: np.ndarray) -> Numbering:
     """Return the numbering of unknowns in the order of their dofs.
 
