@@ -5,8 +5,9 @@ import os
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
-from funicular import Circle, Material, ResultFileError, Run, Scene, load_run
+from funicular import Circle, Material, ResultFileError, Run, Scene, load_run, load_scene
 from funicular.results import streaming
 from shared_scenes import add_cable, add_rider
 
@@ -91,3 +92,12 @@ def killed_and_resumed(scene: Scene, path: Path, writes: int, **settings: object
     """Return a run that is killed after a number of writes to a file, and resumed from its last checkpoint there."""
     kill(scene, path, writes, **settings)
     return scene.run(**settings, save=path, resume=True)
+
+
+def check_file_and_resume(scene: Scene, folder: Path, writes: int, **settings: object) -> Run:
+    """Return the run of a scene read from its file; a run that is killed and resumed must have the same bits."""
+    (folder / "scene.toml").write_text(scene.to_toml(), encoding="utf-8")
+    whole = load_scene(folder / "scene.toml").run(**settings)
+    resumed = killed_and_resumed(scene, folder / "run.nc", writes, **settings)
+    assert all(np.array_equal(whole[name], resumed[name], equal_nan=True) for name in whole)
+    return whole

@@ -7,7 +7,7 @@ from derivatives import of_a_step
 from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
 from funicular.model.build import build
-from interrupted_runs import killed_and_resumed
+from interrupted_runs import check_file_and_resume
 from ropes.scenes import rope_of
 from test_grips import SETTINGS
 
@@ -90,11 +90,7 @@ def test_a_planar_scene_and_its_twin_in_space():
 
 
 def test_resumed_bit_for_bit_and_from_a_file(tmp_path):
-    scene, settings = laid(), SETTINGS | {"duration": 0.6}
-    (tmp_path / "scene.toml").write_text(scene.to_toml(), encoding="utf-8")
-    whole = fu.load_scene(tmp_path / "scene.toml").run(**settings)
-    resumed = killed_and_resumed(scene, tmp_path / "run.nc", 8, **settings)
-    assert all(np.array_equal(whole[name], resumed[name], equal_nan=True) for name in whole)
+    whole = check_file_and_resume(laid(), tmp_path, 8, **SETTINGS | {"duration": 0.6})
     assert np.isnan(whole["bed.first"][0]) and np.nanmax(whole["bed.last"]) < 6
 
 

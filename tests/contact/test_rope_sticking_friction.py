@@ -7,11 +7,10 @@ from derivatives import of_a_step
 from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
 from funicular.model.build import build
-from interrupted_runs import killed_and_resumed
+from interrupted_runs import check_file_and_resume
 from ropes.scenes import on_rope_and_cable, rope_of
 from test_grips import SETTINGS
-from test_rope_friction import BED, ELEMENT, ROPE, on_sled
-from test_ropes import momenta
+from test_rope_friction import BED, ELEMENT, on_sled
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*youngs_modulus|.*density|contact:funicular.FunicularWarning")
 
@@ -216,27 +215,6 @@ def test_tangent_with_stretch_and_flow(dim):
     assert difference.max() < 1e-7 * np.abs(matrix).max()
 
 
-def test_momentum_with_a_free_body():
-    """A rope between free bodies, over a sheave on one of them, meets a free sled: both momenta and their moment are
-    kept to rounding.
-    """
-    scene = fu.Scene(gravity=(0, 0, 0))
-    for name, at, v in (("A", (0, 0, 0), (-0.1, 0, 0)), ("carrier", (4, 0.1, 0), (0, 0, 0)),
-                        ("B", (4.1, 3, 0), (0, 0.1, 0))):
-        scene.rigid_body(name, mass=200.0, inertia=(5, 5, 5), position=at, velocity=v)
-    scene.rigid_body("sled", mass=4.0, inertia=(0.5, 0.5, 0.5), position=(2, -0.4, 0), velocity=(0.7, 1.0, 0),
-                     angular_velocity=(0, 0, 0.2))
-    scene.rope("line", route=[fu.Anchor("A"), fu.Sheave("top", at="carrier", radius=0.1, side="left"), fu.Anchor("B")],
-               tension=100.0, elements=[8, 4], **ROPE)
-    scene.surface("deck", fu.Cylinder(0.3, 1.0), on="sled")
-    scene.contact("line", "deck", friction=sticking(0.3), damping=0.1, **BED)
-    run = scene.run(0.25, **SETTINGS | {"tol": 1e-6, "integrator": "explicit"})
-    assert run["bed.force"][:, 1].max() > 5 and run["bed.friction_force"].any()
-    before, after = (momenta(scene, run, k) for k in (0, -1))
-    assert np.ptp(run["sled.velocity"][:, 1]) > 0.2
-    assert np.abs(after - before).max() < 1e-11
-
-
 def test_a_planar_scene_and_its_twin_in_space():
     runs = [stuck_on_sled(dim, flat=True).run(0.3, **SETTINGS | {"tol": 1e-6}) for dim in (2, 3)]
     assert runs[0]["bed.touching"].max() > 1
@@ -244,11 +222,7 @@ def test_a_planar_scene_and_its_twin_in_space():
 
 
 def test_resumed_bit_for_bit_and_from_a_file(tmp_path):
-    scene, settings = stuck_on_sled(), SETTINGS | {"duration": 0.4}
-    (tmp_path / "scene.toml").write_text(scene.to_toml(), encoding="utf-8")
-    whole = fu.load_scene(tmp_path / "scene.toml").run(**settings)
-    resumed = killed_and_resumed(scene, tmp_path / "run.nc", 8, **settings)
-    assert all(np.array_equal(whole[name], resumed[name], equal_nan=True) for name in whole)
+    check_file_and_resume(stuck_on_sled(), tmp_path, 8, **SETTINGS | {"duration": 0.4})
 
 
 def test_a_state_of_rest_has_none():
