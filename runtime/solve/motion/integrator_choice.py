@@ -23,6 +23,7 @@ from ...parts.settings import RunSettings
 from ...parts.slide import Slide
 from ..linear.condensation import with_entries, without_forces
 from ..notes.supersonic_loads import outrunning
+from .stopping_distance import stopping_share
 
 POWER_ITERATIONS = 20
 """Number of power iterations."""
@@ -39,16 +40,15 @@ MIN_TRIAL_EVALUATIONS = 3000.0
 """Lower bound of the explicit method's evaluations of eq 38 for a trial against it."""
 
 
-LOW_ORDER_TOL = 4e-3
+LOW_ORDER_TOL = 1e-3
 """The tol from which on the method of low order is the first choice: it is cheaper at errors above 1e-3 of the
 motion."""
 
 LOW_ORDER_TOL_WITH_FRICTION = 4e-2
 """The same for slides with friction: at tighter tol the error of genalpha can be many times tol."""
 
-LOW_ORDER_TOL_FRACTION = 0.25
-"""Fraction of tol for the method of low order, whose error can exceed its tol several times
-(tests/benchmarks/choice.py)."""
+LOW_ORDER_TOL_FRACTION = 0.7
+"""Fraction of tol for the method of low order, whose error can exceed its tol (tests/benchmarks/choice.py)."""
 
 MAX_LOW_ORDER_COST_RATIO = 3.0
 """Upper bound of the cost of the method of low order over the expected cost of radau."""
@@ -69,6 +69,9 @@ MIN_LOW_ORDER_EVALUATIONS = 1500.0
 FAST_TURN_RATIO = 10.0
 """Rate of a turning body over that of the overall motion above which the error control of the method of low order
 misses its errors."""
+
+MAX_STOPPING_SHARE = 0.02
+"""Distance over which drag stops cables, over their length, up to which vibrations do not grow over the run."""
 
 
 @dataclass(frozen=True)
@@ -139,11 +142,12 @@ def cheapest(demands: Demands, duration: float) -> tuple[Integrator, str, Rival 
 
 
 def suits_low_order(demands: Demands, scene: SceneData, model: Model) -> bool:
-    """Return whether the error of positions that genalpha estimates is decisive: not with moving supports, friction of
-    slides at a tight tol, bodies that turn fast or outrun their cable's waves, nor without cables.
+    """Return whether the error of positions that genalpha estimates is decisive: not with moving supports, which may
+    excite vibrations without end, unless a fluid damps these; friction of slides at a tight tol, bodies that turn fast
+    or outrun their cable's waves, nor without cables.
     """
     fastest = max((float(np.linalg.norm(body.angular_velocity)) for body in scene.bodies.values()), default=0.0)
-    return (bool(model.cables) and not model.motions
+    return (bool(model.cables) and (not model.motions or stopping_share(scene) <= MAX_STOPPING_SHARE)
             and (demands.tol >= LOW_ORDER_TOL_WITH_FRICTION or not demands.friction)
             and fastest <= FAST_TURN_RATIO * demands.slow and not outrunning(scene))
 
