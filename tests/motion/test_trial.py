@@ -7,15 +7,17 @@ import mooring_lines
 import numpy as np
 import pytest
 from choice import farthest, motion, references, simulate
-from funicular.integrators import Explicit, Radau
+from funicular.integrators import Explicit, GeneralisedAlpha, Radau
 from funicular.results import streaming
-from funicular.solve.motion import trial_run
+from funicular.solve.motion import integrator_choice, trial_run
 from funicular.solve.motion.integrator_choice import Rival
 from hard_cases.case import positions
 from pendulum import pendulum
 from ringing import run_of
 from ringing_scenes import SCENES as RINGING
 from sliding import sliding_mass
+
+GENALPHA = GeneralisedAlpha()
 
 
 @pytest.mark.parametrize("name", ["pendulum, 8, E 7e8", "first scene", "flexible link", "steel and rubber",
@@ -57,6 +59,25 @@ def test_genalpha_takes_the_place_of_radau_where_slides_cross_many_elements():
     assert run.report["integrator"] == "genalpha" and "radau on trial" in run.report["integrator_reason"]
     assert np.linalg.norm(run["A.position"] - exact, axis=1).max() <= tol * moved
     assert run.report["newton_iterations"] < 0.2 * radau.report["evaluations"]
+
+
+@pytest.mark.parametrize("name", ["rigid link", "hard stop"])
+def test_a_method_returns_whose_rival_costs_more_than_expected(name, monkeypatch):
+    """The cost of radau is an estimate, here far too low; those of both methods are measured in turn, once each."""
+    plain = simulate(name, tol=1e-2)
+    monkeypatch.setattr(integrator_choice, "MAX_LOW_ORDER_COST_RATIO", 0.4)
+    returned = simulate(name, tol=1e-2)
+    reason = returned.report["integrator_reason"]
+    assert reason.index("genalpha on trial took") < reason.index("radau on trial took")
+    assert returned.report["integrator"] == "genalpha"
+    assert np.array_equal(positions(returned), positions(plain))
+
+
+def test_the_cost_of_a_stability_limit_is_certain():
+    limited, estimated = Rival(Explicit(), 1e4), Rival(Radau(), 1e4, Rival(Explicit(), 5e4))
+    assert trial_run.next_rival(Radau(), 2e4, limited) is None
+    assert trial_run.next_rival(GENALPHA, 2e4, estimated) == Rival(GENALPHA, 2e4)
+    assert trial_run.next_rival(GENALPHA, 9e4, estimated) is estimated.rival
 
 
 def times_reached(make, **settings) -> tuple[fu.Run, list[float]]:
@@ -145,4 +166,4 @@ def test_work_beyond_any_count_is_no_error():
 
     for cost in (1e30, float("inf")):
         found = trial_run.on_trial(Rated(), Rival(Explicit(), cost), Radau(), 1.0, 1, None, None)
-        assert found == ("completed", "")
+        assert found == ("completed", "", 0.0)

@@ -40,7 +40,7 @@ from .long_runs import LongRun
 from .progress import ProgressDisplay
 from .row_stream import RowBlocks, RowStream, row_blocks
 from .trial_cache import TrialCache
-from .trial_run import on_trial
+from .trial_run import next_rival, on_trial
 
 LOG = logging.getLogger(__name__)
 
@@ -109,12 +109,16 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: ProgressDispl
              method.name, reason, set_up)
     run = _begun(scene, settings, ready, method, blocks, on_progress, stream, on_trial=rival is not None)
     status = run.status
+    lost_trials: list[str] = []
     while rival is not None and status is None:
-        status, lost = on_trial(run.engine, rival, method, settings.duration, blocks.every, run.observer, stream)
+        status, lost, cost = on_trial(run.engine, rival, method, settings.duration, blocks.every, run.observer, stream)
         if lost:
             if trials is not None:
                 trials.note(scene, method, rival)
-            method, reason, rival = rival.method, f"{reason}; {lost}", rival.rival
+            lost_trials.append(method.name)
+            again = rival.method.name in lost_trials  # its cost has been measured
+            after = None if again else next_rival(method, cost, rival)
+            method, reason, rival = rival.method, f"{reason}; {lost}", after
             run = _begun(scene, settings, _prepared(scene, settings, initial), method, blocks, on_progress, stream,
                          on_trial=rival is not None)
             status = run.status

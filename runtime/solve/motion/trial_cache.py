@@ -23,18 +23,23 @@ class TrialCache:
     whose cost is known beforehand. A successful trial costs nothing and is repeated.
 
     shape: of the first scene, where that lost a trial; lost: the cost of the rival by the names of both methods;
-    is_open: until the end of the first scene, whose trials count.
+    returned: the names of a method that lost and of its rival that lost to it afterwards, of more than its expected
+    cost; is_open: until the end of the first scene, whose trials count.
     """
 
     shape: tuple[object, ...] = ()
     lost: dict[tuple[str, str], float] = field(default_factory=dict)
+    returned: set[tuple[str, str]] = field(default_factory=set)
     is_open: bool = True
 
     def of(self, scene: SceneData, method: Integrator, reason: str,
            rival: Rival | None) -> tuple[Integrator, str, Rival | None]:
         """Return the choice for a scene, as `choose` does, from its choice by its own numbers."""
+        of_first = " on trial lost in the first scene, which has the same shape"
+        if rival is not None and (method.name, rival.method.name) in self.returned and shape_of(scene) == self.shape:
+            return method, f"{reason}; {rival.method.name}{of_first}", None
         while rival is not None and self._lost(method, rival) and shape_of(scene) == self.shape:
-            reason += f"; {method.name} on trial lost in the first scene, which has the same shape"
+            reason += f"; {method.name}{of_first}"
             method, rival = rival.method, rival.rival
         return method, reason, rival
 
@@ -47,6 +52,8 @@ class TrialCache:
         if self.is_open:
             self.shape = shape_of(scene)
             self.lost[method.name, rival.method.name] = rival.cost
+            if (rival.method.name, method.name) in self.lost:
+                self.returned.add((rival.method.name, method.name))
 
 
 def shape_of(scene: SceneData) -> tuple[object, ...]:
