@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
+from ..kernels.libraries import kernels_of
 from .model import CableModel
 
 Rule = tuple[Sequence[float], Sequence[float]]
 """Of quadrature over an element: parts of its length, and weights, whose sum is 1."""
 
 
-def slopes(cable: CableModel, part: float) -> np.ndarray:
-    """Return (1 or elements, vectors): shape functions of the slope at a fraction of the element's length."""
-    lengths = cable.mesh.lengths
-    return np.asarray(cable.kernel("on_axis").rows(len(lengths), lengths, part * lengths)[1])
+def slopes(cable: CableModel, *parts: float) -> np.ndarray:
+    """Return (parts, 1 or elements, vectors): shape functions of the slope at fractions of the element's length."""
+    return _slopes(cable.element, cable.library, cable.mesh.lengths.tobytes(), parts)
+
+
+@lru_cache(maxsize=64)
+def _slopes(element: str, library: str | None, lengths: bytes, parts: tuple[float, ...]) -> np.ndarray:
+    """Return `slopes`, once for all meshes of these lengths (1 or elements,), in m."""
+    on_axis, h = getattr(kernels_of(library), f"{element}_on_axis"), np.frombuffer(lengths)
+    return np.array([on_axis.rows(len(h), h, part * h)[1] for part in parts])
 
 
 def gauss_rule(points: int) -> Rule:
@@ -30,12 +38,10 @@ def stretches(cable: CableModel, first: np.ndarray, last: np.ndarray, element: n
 
     first, last: the vectors of their nodes, (..., n, vectors, dim); rule: of quadrature.
     """
-    e = np.concatenate([first, last], axis=-2)
-    found = np.zeros(e.shape[:-2])
-    for part, weight in zip(*rule, strict=True):
-        N = np.broadcast_to(slopes(cable, part), (cable.n_elements, e.shape[-2]))[element]
-        found += weight * np.linalg.norm(np.einsum("nk,...nkd->...nd", N, e), axis=-1)
-    return found
+    parts, weights = rule
+    shapes = slopes(cable, *parts)
+    lengths = _lengths(_summed(shapes if shapes.shape[1] == 1 else shapes[:, element], first, last))
+    return np.asarray(np.einsum("p,p...->...", weights, lengths))
 
 
 def middle_strain(cable: CableModel, nodal_vectors: np.ndarray) -> np.ndarray:
@@ -43,17 +49,32 @@ def middle_strain(cable: CableModel, nodal_vectors: np.ndarray) -> np.ndarray:
 
     nodal_vectors: (T, nodes, vectors, 2 or 3).
     """
-    return strain_at(cable, nodal_vectors, 0.5)
+    found: np.ndarray = strains_at(cable, nodal_vectors, (0.5,))[0]
+    return found
 
 
-def strain_at(cable: CableModel, nodal_vectors: np.ndarray, part: float) -> np.ndarray:
-    """Return (T, elements): the axial strain at a fraction of the length of each element."""
-    return np.asarray(np.linalg.norm(slope_at(cable, nodal_vectors, slopes(cable, part)), axis=-1) - 1.0)
+def strains_at(cable: CableModel, nodal_vectors: np.ndarray, parts: Sequence[float]) -> np.ndarray:
+    """Return (parts, T, elements): the axial strain at fractions of the length of each element."""
+    return _lengths(slopes_at(nodal_vectors, slopes(cable, *parts))) - 1.0
 
 
-def slope_at(cable: CableModel, nodal_vectors: np.ndarray, shapes: np.ndarray) -> np.ndarray:
-    """Return (T, elements, dim): the sums of the vectors of each element's nodes, weighted as `slopes` returns."""
-    vectors = cable.shape[1]
-    N = np.broadcast_to(shapes, (cable.n_elements, 2 * vectors))
-    return np.asarray(np.einsum("ek,tekd->ted", N[:, :vectors], nodal_vectors[:, :-1])
-                      + np.einsum("ek,tekd->ted", N[:, vectors:], nodal_vectors[:, 1:]))
+def slopes_at(nodal_vectors: np.ndarray, shapes: np.ndarray) -> np.ndarray:
+    """Return (parts, T, elements, dim): the sums of the vectors of each element's nodes, weighted as `slopes` returns.
+    """
+    return _summed(shapes, nodal_vectors[:, :-1], nodal_vectors[:, 1:])
+
+
+def _summed(shapes: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
+    """Return (parts, ..., n, dim): sums of the vectors of nodes (..., n, vectors, dim), weighted by shapes (parts, 1 or
+    n, vectors of two nodes). Products of whole arrays take a third of the time of `numpy.einsum` for few elements.
+    """
+    vectors, free = first.shape[-2], (1,) * (first.ndim - 3)
+    N, counted = shapes.reshape(len(shapes), *free, *shapes.shape[1:], 1), np.any(shapes, axis=(0, 1))
+    ends = (sum(N[..., offset + k, :] * end[..., k, :] for k in range(vectors) if counted[offset + k])
+            for offset, end in ((0, first), (vectors, last)))
+    return np.asarray(sum(ends))
+
+
+def _lengths(vectors: np.ndarray) -> np.ndarray:
+    """Return the lengths (...) of vectors (..., dim)."""
+    return np.asarray(np.sqrt(np.add.reduce(vectors * vectors, axis=-1)))

@@ -5,6 +5,7 @@ Coordinates, unknowns and their order are those of engine/bodies/model.h.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -79,7 +80,7 @@ class CableModel:
     @property
     def coordinates(self) -> slice:
         """Return the range of its coordinates in q, v and the dofs."""
-        return slice(self.first, self.first + int(np.prod(self.shape)))
+        return slice(self.first, self.first + math.prod(self.shape))
 
     def nodal(self, q: np.ndarray) -> np.ndarray:
         """Return its part of coordinates, rates or numbers of dofs (..., n) as (..., nodes, vectors, dim)."""

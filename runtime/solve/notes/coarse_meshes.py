@@ -18,7 +18,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...kernels.mesh import Mesh
-from ...model.middle_strain import gauss_rule, strain_at
+from ...model.middle_strain import gauss_rule, strains_at
 from ...model.model import CableModel, Model
 from ...model.states import element_coordinates
 from ...parts.locations import attached
@@ -27,6 +27,9 @@ from .note import LineStiffness, Note, Rows
 
 STRAIN_POSITIONS, STRAIN_WEIGHTS = (np.array(each) for each in gauss_rule(5))
 """Gauss points and weights of the strain, as fractions of the length of an element."""
+_CENTRED = 2 * STRAIN_POSITIONS - 1
+OSCILLATION = np.eye(len(STRAIN_WEIGHTS)) - STRAIN_WEIGHTS - 3 * np.outer(_CENTRED, STRAIN_WEIGHTS * _CENTRED)
+"""The strain at the Gauss points less its line of best fit is this matrix times the strain."""
 WORK_ERROR_FACTOR, ENERGY_ERROR_FACTOR = 15.0, 2.0
 """Error of forces over E/W, with W the work of the tension, and with W the energies of bending and of motion."""
 FORCE_ERROR_LIMIT = 0.01
@@ -54,11 +57,16 @@ class _Strains:
         self.h = np.broadcast_to(cable.mesh.lengths, cable.n_elements)
         self.supported = sorted(self.part.node(each.s) for each in scene.supports if each.cable == cable.name)
         self.drawn = self._strain(self.part.rest_nodal_vectors[None]) if self.part.is_curved else 0.0
-        self.places = attached(scene, cable.name)
+        self.scene = scene
+
+    @property
+    def places(self) -> list[float]:
+        """Return the arc-lengths in m at which supports, loads and other parts are attached."""
+        return attached(self.scene, self.cable.name)
 
     def _strain(self, nodal: np.ndarray) -> np.ndarray:
         """Return (positions, T, elements); nodal: (T, nodes, vectors, dim)."""
-        return np.stack([strain_at(self.cable, nodal, at) for at in STRAIN_POSITIONS])
+        return strains_at(self.cable, nodal, STRAIN_POSITIONS.tolist())
 
     def of(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the strain (positions, T, elements), its mean over each element (T, elements), and E (T, elements) in
@@ -67,25 +75,28 @@ class _Strains:
         strain = self._strain(self.cable.nodal(q)) - self.drawn
         if self.part.traits.membrane == "tension_only":
             strain = np.maximum(strain, 0.0)
-        x = 2 * STRAIN_POSITIONS - 1
-        mean = np.einsum("p,pte->te", STRAIN_WEIGHTS, strain)
-        tilt = np.einsum("p,pte->te", 3 * STRAIN_WEIGHTS * x, strain)
-        oscillation = strain - mean - tilt * x[:, None, None]
-        return strain, mean, 0.5 * self.EA * self.h * np.einsum("p,pte->te", STRAIN_WEIGHTS, oscillation**2)
+        by_point, shape = strain.reshape(len(STRAIN_WEIGHTS), -1), strain.shape[1:]
+        mean, square = STRAIN_WEIGHTS @ by_point, STRAIN_WEIGHTS @ (OSCILLATION @ by_point) ** 2
+        return strain, mean.reshape(shape), 0.5 * self.EA * self.h * square.reshape(shape)
 
-    def bending(self, q: np.ndarray, strain: np.ndarray) -> float:
-        """Return the elastic energy at q (n,) without that of the axial strain (positions, elements), in J."""
-        cable, e = self.cable, element_coordinates(self.cable, q[None])[0]
-        A = np.ascontiguousarray(np.broadcast_to(cable.A, (cable.n_elements, cable.A.shape[1])))
-        whole = cable.law_kernel("energy").rows(cable.n_elements, np.ascontiguousarray(self.h),
-                                                np.ascontiguousarray(e), A)
-        axial = 0.5 * self.EA * np.einsum("p,pe,e->", STRAIN_WEIGHTS, strain**2, self.h)
-        return max(float(np.sum(whole) - axial), 0.0)
+    def bending(self, q: np.ndarray, strain: np.ndarray) -> np.ndarray:
+        """Return (T,): the elastic energy at q (T, n) without that of the axial strain (positions, T, elements), in J.
+        """
+        cable, e = self.cable, element_coordinates(self.cable, q)
+        energy, h, A = cable.law_kernel("energy"), cable.mesh.lengths, cable.A
+        if len(h) == len(A) == 1:
+            whole = energy.rows(e.shape[0] * e.shape[1], h[0], e.reshape(-1, *e.shape[2:]), A[0]).reshape(e.shape[:2])
+        else:
+            h, A = np.broadcast_to(h, len(self.h)), np.broadcast_to(A, (len(self.h), A.shape[1]))
+            whole = np.array([energy.rows(len(self.h), h, each, A) for each in e])
+        whole = whole.sum(axis=1)
+        axial = 0.5 * self.EA * np.einsum("p,pte,e->t", STRAIN_WEIGHTS, strain**2, self.h)
+        return np.asarray(np.maximum(whole - axial, 0.0))
 
-    def motion(self, v: np.ndarray) -> float:
-        """Return the kinetic energy at rates v (n,), in J."""
-        e, m = element_coordinates(self.cable, v[None])[0], self.cable.m
-        return 0.5 * float(np.einsum("eid,eij,ejd->", e, np.broadcast_to(m, (len(e), *m.shape[1:])), e))
+    def motion(self, v: np.ndarray) -> np.ndarray:
+        """Return (T,): the kinetic energy at rates v (T, n), in J."""
+        e = element_coordinates(self.cable, v)
+        return np.asarray(0.5 * np.sum(e * (self.cable.m @ e), axis=(1, 2, 3)))
 
 
 class _Line:
@@ -93,6 +104,7 @@ class _Line:
 
     def __init__(self, strains: list[_Strains]):
         self.strains, self.name = strains, strains[0].part.name
+        self.ends = sorted({0, strains[0].cable.n_elements, *strains[0].supported})
 
     def of(self, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return E (T, elements) and its measure (T,) of unit error, both in J, and the tension (T, elements) in N, at
@@ -101,7 +113,8 @@ class _Line:
         strain, mean, each_lost = zip(*(each.of(q) for each in self.strains), strict=True)
         lost, tension = np.concatenate(each_lost, axis=1), [s.EA * e for s, e in zip(self.strains, mean, strict=True)]
         measure = self._work(q, mean, tension) / WORK_ERROR_FACTOR
-        for k in np.flatnonzero(lost.sum(axis=1) > FORCE_ERROR_LIMIT / MID_ELEMENT_FACTOR * measure):
+        k = np.flatnonzero(lost.sum(axis=1) > FORCE_ERROR_LIMIT / MID_ELEMENT_FACTOR * measure)
+        if len(k):
             measure[k] += sum(each.bending(q[k], e[:, k]) + each.motion(v[k])
                               for each, e in zip(self.strains, strain, strict=True)) / ENERGY_ERROR_FACTOR
         return lost, measure, np.concatenate(tension, axis=1)
@@ -110,15 +123,13 @@ class _Line:
         """Return (T,): the work of the tension, see above: of one cable between its ends and supports, of several
         between the two supports with the largest distance.
         """
-        stretching = sum(np.einsum("te,e->t", np.abs(N * e), each.h)
-                         for each, N, e in zip(self.strains, tension, mean, strict=True))
+        stretching = sum(np.abs(N * e) @ each.h for each, N, e in zip(self.strains, tension, mean, strict=True))
         length = [each.h * (1 + e) for each, e in zip(self.strains, mean, strict=True)]
         forces = [np.abs(N) * part for N, part in zip(tension, length, strict=True)]
         if len(self.strains) == 1:
-            one = self.strains[0]
-            ends = sorted({0, one.cable.n_elements, *one.supported})
-            force, along = (np.add.reduceat(each[0], ends[:-1], axis=1) for each in (forces, length))
-            apart = np.linalg.norm(np.diff(one.cable.positions(q)[:, ends], axis=1), axis=-1)
+            force, along = (np.add.reduceat(each[0], self.ends[:-1], axis=1) for each in (forces, length))
+            r = self.strains[0].cable.positions(q)[:, self.ends]
+            apart = np.linalg.norm(r[:, 1:] - r[:, :-1], axis=-1)
         else:
             force, along = (sum(part.sum(axis=1, keepdims=True) for part in each) for each in (forces, length))
             r = np.concatenate([each.cable.positions(q)[:, each.supported] for each in self.strains], axis=1)

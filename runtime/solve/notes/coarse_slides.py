@@ -24,6 +24,8 @@ from .note import LineStiffness, Note, Rows
 
 LENGTH_FACTOR, ANGLE_FACTOR = 0.02, 0.08
 """Difference of the tensions over the squared angle times h/sqrt(EI/N), and its upper bound over the squared angle."""
+ROUNDING = float(np.finfo(float).eps)
+"""Lower bound of the angle, in rad."""
 
 
 class _Beside(NamedTuple):
@@ -57,8 +59,10 @@ class CoarseSlides(Note):
 
     def see(self, rows: Rows) -> None:
         """Measure further output rows."""
-        for k, slide in enumerate(self.model.slides):
-            force = np.linalg.norm(outputs_by_name("slide", rows["slide"])["force"][:, k], axis=-1)
+        if not self.model.slides:
+            return
+        forces = np.linalg.norm(outputs_by_name("slide", rows["slide"])["force"], axis=-1)
+        for k, (slide, force) in enumerate(zip(self.model.slides, forces.T, strict=True)):
             numbers, h = self._of(slide, rows["q"], rows["s"][:, k], force)
             count, sums, longest = self.found.get(slide.name, (0, [0.0, 0.0, 0.0], 0.0))
             self.found[slide.name] = [count + len(h), (np.array(sums) + numbers.sum(axis=0)).tolist(),
@@ -71,7 +75,7 @@ class CoarseSlides(Note):
         at = self._on_cable(slide, q, s) if slide.coordinates is None else _on_rope(slide.coordinates, q, s)
         lengths = np.linalg.norm(at.before, axis=-1) * np.linalg.norm(at.after, axis=-1)
         cosine = np.einsum("td,td->t", at.before, at.after) / np.where(lengths > 0, lengths, 1.0)
-        half = np.maximum(np.arccos(np.clip(cosine, -1, 1)) / 2, np.finfo(float).eps)
+        half = np.maximum(np.arccos(np.minimum(np.maximum(cosine, -1), 1)) / 2, ROUNDING)
         of = self._stiffness(slide)
         tension = np.maximum(np.maximum(of.EA * at.strain, force / (2 * np.sin(half))), 1e-300)
         angle = 2 * np.arcsin(np.minimum(force / (2 * tension), 1.0))
@@ -82,10 +86,11 @@ class CoarseSlides(Note):
     def _on_cable(self, slide: SlideModel, q: np.ndarray, s: np.ndarray) -> _Beside:
         cable = self.model.cables[slide.cable]
         n, rows, nodal = cable.n_elements, np.arange(len(q)), cable.nodal(q)
-        element = np.array([int(cable.mesh.element_at(float(each))) for each in s])
+        element = cable.mesh.element_at(s)
         first, last = np.maximum(element - 1, 0), np.minimum(element + 2, n)
         slopes = nodal[:, :, cable.vectors.index("r_x")]
-        mean = np.cumsum(np.pad(middle_strain(cable, nodal), ((0, 0), (1, 0))), axis=1)
+        mean = np.zeros((len(q), n + 1))
+        np.cumsum(middle_strain(cable, nodal), axis=1, out=mean[:, 1:])
         strain = (mean[rows, last] - mean[rows, first]) / (last - first)
         return _Beside(slopes[rows, first], slopes[rows, last], strain, np.broadcast_to(cable.mesh.lengths, n)[element])
 

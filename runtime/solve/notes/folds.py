@@ -14,7 +14,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...engine import Engine
-from ...model.middle_strain import gauss_rule, slope_at, slopes, stretches
+from ...model.middle_strain import gauss_rule, slopes, slopes_at, stretches
 from ...model.model import CableModel
 from .note import Note, Rows, element_place
 
@@ -105,7 +105,7 @@ class Folds(Note):
 def _turns(cable: CableModel, nodal: np.ndarray) -> np.ndarray:
     """Return (elements,): the largest angle in rad between tangents of each element; nodal: (1, nodes, vectors, dim).
     """
-    tangents = np.concatenate([slope_at(cable, nodal, slopes(cable, part)) for part in TANGENT_POSITIONS])
+    tangents = slopes_at(nodal, slopes(cable, *TANGENT_POSITIONS))[:, 0]
     tangents /= np.maximum(np.linalg.norm(tangents, axis=-1, keepdims=True), np.finfo(float).tiny)
     cosines = np.einsum("aed,bed->eab", tangents, tangents).min(axis=(1, 2))
     return np.asarray(np.arccos(np.clip(cosines, -1, 1)))
@@ -113,4 +113,4 @@ def _turns(cable: CableModel, nodal: np.ndarray) -> np.ndarray:
 
 def _chords(r: np.ndarray) -> np.ndarray:
     """Return (..., elements): distances in m of consecutive nodes (..., nodes, dim)."""
-    return np.asarray(np.linalg.norm(np.diff(r, axis=-2), axis=-1))
+    return np.asarray(np.linalg.norm(r[..., 1:, :] - r[..., :-1, :], axis=-1))

@@ -34,6 +34,8 @@ NOTES: tuple[type[Note], ...] = (
     CoincidentPoints, FastTurns, NormalForces, SpinningSections, Penetrations, SurfaceEnds, CoarseContact,
     FleetAngles, SlackRopes)
 
+ROW_INTERVALS = {note.row_interval for note in NOTES}
+
 N = TypeVar("N", bound=Note)
 
 
@@ -52,13 +54,13 @@ class RowNotes:
     def see(self, engine: Engine) -> None:
         """Measure the rows that the engine has, and the ends of its steps."""
         rows = engine.rows()
-        numbers = self._rows + np.arange(len(rows["time"]))
-        self._rows += len(numbers)
+        found = {interval: {name: values[(1 - self._rows) % interval :: interval] for name, values in rows.items()}
+                 for interval in ROW_INTERVALS}
+        self._rows += len(rows["time"])
         for note in self._notes.values():
             note.see_steps(engine)
-            at = slice(None) if note.row_interval == 1 else numbers % note.row_interval == 1
-            if len(numbers[at]):
-                note.see({name: values[at] for name, values in rows.items()})
+            if len(found[note.row_interval]["time"]):
+                note.see(found[note.row_interval])
 
     def notes(self) -> list[str]:
         """Return the notes on all rows and steps."""

@@ -62,10 +62,10 @@ class Sensitivity(Note):
     def see(self, rows: Rows) -> None:
         """Measure further output rows."""
         for cable in self.model.cables:
-            self._add(self.scene.cables[cable.name].where, rows["time"],
-                      CABLE_EXPONENT_FACTOR * self._of_cable(cable, rows["q"]))
-        for k, joint, part in self._joints:
-            self._add(part.where, rows["time"], BODY_EXPONENT_FACTOR * self._of_joint(k, joint, rows))
+            part = self.scene.cables[cable.name]
+            self._add(part.where, rows["time"], CABLE_EXPONENT_FACTOR * self._of_cable(cable, part, rows["q"]))
+        for k, joint, hinge in self._joints:
+            self._add(hinge.where, rows["time"], BODY_EXPONENT_FACTOR * self._of_joint(k, joint, rows))
 
     @property
     def worst(self) -> tuple[float, str, float]:
@@ -81,18 +81,23 @@ class Sensitivity(Note):
     def _add(self, name: str, time: np.ndarray, rates: np.ndarray) -> None:
         """Add rates (times, exponents) in 1/s to the exponents of a part."""
         exponents, until, since, rows = self.found.get(name, ([0.0] * rates.shape[1], 0.0, -1.0, 0))
-        grown = np.array(exponents) + np.cumsum(rates * np.diff(time, prepend=until)[:, None], axis=0)
-        begun = np.flatnonzero(grown.max(axis=1) > MIN_GROWTH_EXPONENT)
-        if since < 0 and len(begun):
-            since = float(time[begun[0]])
-        self.found[name] = [grown[-1].tolist(), float(time[-1]), since, rows + len(time)]
+        if rates.any():
+            grown = np.array(exponents) + np.cumsum(rates * np.diff(time, prepend=until)[:, None], axis=0)
+            begun = np.flatnonzero(grown.max(axis=1) > MIN_GROWTH_EXPONENT)
+            if since < 0 and len(begun):
+                since = float(time[begun[0]])
+            exponents = grown[-1].tolist()
+        self.found[name] = [exponents, float(time[-1]), since, rows + len(time)]
 
-    def _of_cable(self, cable: CableModel, q: np.ndarray) -> np.ndarray:
+    def _of_cable(self, cable: CableModel, part: Cable, q: np.ndarray) -> np.ndarray:
         """Return (times, elements): the rates in 1/s at which elements of a cable buckle."""
-        part, nodal = self.scene.cables[cable.name], cable.nodal(q)
+        nodal = cable.nodal(q)
         strain = stretches(cable, nodal[:, :-1], nodal[:, 1:], np.arange(cable.n_elements), SIMPSON_RULE) - 1
         _, EI, _, mass = LineStiffness.of(part, self.model.dim)
-        N = compressive_stiffness(part.traits.membrane, part.section, part.material) * np.maximum(-strain, 0.0)
+        stiffness = compressive_stiffness(part.traits.membrane, part.section, part.material)
+        if stiffness * -strain.min() <= EI * (np.pi / part.length) ** 2:  # not even in one wave along the cable
+            return np.zeros(strain.shape)
+        N = stiffness * np.maximum(-strain, 0.0)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # of a rope without stiffness
             k = np.clip(np.nan_to_num(np.sqrt(N / (2 * EI)), posinf=np.inf), np.pi / part.length,
                         np.pi / cable.mesh.lengths)

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...base.rotations import cross
-from ...model.middle_strain import middle_strain, slope_at, slopes
+from ...model.middle_strain import middle_strain, slopes, slopes_at
 from ...model.model import CableModel
 from .note import LineStiffness, Note, Rows
 from .sensitivity import GROWTH_TEXT
@@ -65,15 +65,12 @@ class Straightened(Note):
 
 def _curvature(cable: CableModel, nodal: np.ndarray) -> np.ndarray:
     """Return (positions, T, elements): curvatures in 1/m at nodal vectors (T, nodes, vectors, 3)."""
-    found = []
-    for part in CURVATURE_POSITIONS:
-        r_x = slope_at(cable, nodal, slopes(cable, part))
-        change = slopes(cable, part + SLOPE_DIFFERENCE) - slopes(cable, part - SLOPE_DIFFERENCE)
-        lengths = np.broadcast_to(cable.mesh.lengths, cable.n_elements)[:, None]
-        r_xx = slope_at(cable, nodal, change) / (2 * SLOPE_DIFFERENCE * lengths)
-        size = np.linalg.norm(r_x, axis=-1)
-        found.append(np.linalg.norm(cross(r_x, r_xx), axis=-1) / np.where(size > 0, size, 1.0) ** 3)
-    return np.stack(found)
+    r_x = slopes_at(nodal, slopes(cable, *CURVATURE_POSITIONS))
+    after, before = (slopes(cable, *(part + side for part in CURVATURE_POSITIONS))
+                     for side in (SLOPE_DIFFERENCE, -SLOPE_DIFFERENCE))
+    r_xx = slopes_at(nodal, after - before) / (2 * SLOPE_DIFFERENCE * cable.mesh.lengths[:, None])
+    size = np.linalg.norm(r_x, axis=-1)
+    return np.asarray(np.linalg.norm(cross(r_x, r_xx), axis=-1) / np.where(size > 0, size, 1.0) ** 3)
 
 
 def _rates(cable: CableModel, of: LineStiffness, nodal: np.ndarray, ratio: np.ndarray) -> np.ndarray:
