@@ -49,7 +49,7 @@ def _pass_on() -> None:
 
 def _is_here() -> bool:
     """Return whether this is the main thread, which signals reach."""
-    return threading.current_thread() is threading.main_thread()
+    return threading.get_ident() == threading.main_thread().ident
 
 
 class uninterrupted:  # noqa: N801  for ``with``

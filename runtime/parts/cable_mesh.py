@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Annotated, Any
 
 import numpy as np
@@ -47,6 +48,20 @@ def check_ends(nodes: tuple[float, ...], length: float) -> None:
     if abs(nodes[-1] - length) > LENGTH_TOLERANCE * length:
         raise ValueError(f"nodes must end at the cable's undeformed length, {length!r} m, got {nodes[-1]!r} m",
                          "give arc-lengths of the undeformed cable, from 0 to its length")
+
+
+@lru_cache(maxsize=128)
+def even_mesh(length: float, n_elements: int) -> Mesh:
+    """Return the mesh of equal elements of a length, in m."""
+    return Mesh.even(length, n_elements)
+
+
+@lru_cache(maxsize=128)
+def even_nodes(total: float, n_elements: int) -> np.ndarray:
+    """Return (nodes,): arc-lengths of the nodes of equal elements on a cable of a length in m, read-only."""
+    node_s: np.ndarray = total * np.arange(n_elements + 1) / n_elements
+    node_s.flags.writeable = False
+    return node_s
 
 
 def mesh_of(nodes: tuple[float, ...], length: float) -> Mesh:

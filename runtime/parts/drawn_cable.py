@@ -72,7 +72,7 @@ class DrawnCable(Fields):
     def mesh(self) -> Mesh:
         """Return its mesh. Raises SceneError where its elements are still to be chosen."""
         if self.nodes is None:
-            return Mesh.even(self.length / self.elements, self.elements)
+            return cable_mesh.even_mesh(self.length / self.elements, self.elements)
         return cable_mesh.mesh_of(self.nodes, self.length)
 
     @property
@@ -103,7 +103,7 @@ class DrawnCable(Fields):
     def node_s(self) -> np.ndarray:
         """Return (nodes,): arc-length of the nodes in m."""
         mesh = self.mesh
-        return self.length * np.arange(self.elements + 1) / self.elements if mesh.is_even else mesh.node_s
+        return cable_mesh.even_nodes(self.length, self.elements) if mesh.is_even else mesh.node_s
 
     def divided(self, parts: int) -> np.ndarray:
         """Return (parts elements + 1,): arc-lengths in m of its nodes and of points that divide each element evenly."""
@@ -264,9 +264,9 @@ class DrawnCable(Fields):
         """Return the number of the node at arc-length ``s`` in m, else None; a cable without mesh gets one anywhere."""
         if self.is_open:
             return round(s / (LENGTH_TOLERANCE * self.length))
-        mesh, node_s = self.mesh, self.node_s
-        node = round(s / self.length * self.elements) if mesh.is_even else int(mesh.nearest_node(s))
-        on_node = 0 <= node <= self.elements and abs(node_s[node] - s) <= LENGTH_TOLERANCE * self.length
+        mesh, length, elements = self.mesh, self.length, self.elements
+        node = round(s / length * elements) if mesh.is_even else int(mesh.nearest_node(s))
+        on_node = 0 <= node <= elements and abs(self.node_s[node] - s) <= LENGTH_TOLERANCE * length
         return node if on_node else None
 
     def element_at(self, s: float) -> int:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property
 from itertools import chain
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Self, get_args
 
 from pydantic import BaseModel, ConfigDict, PlainValidator, ValidationError, model_validator
@@ -60,13 +61,14 @@ class _TranslatingType(ModelMetaclass):
         """Ignore the signature that pydantic makes, of annotations with all their validators."""
 
     def __call__(cls, /, *given: Any, **data: Any) -> Any:  # noqa: N805  it is a metaclass
-        positional = [name for name in cls.positional if name in cls.keywords()]  # type: ignore[attr-defined]
+        known = cls.keywords()  # type: ignore[attr-defined]  # of its one user, Part
+        positional = [name for name in cls.positional if name in known]  # type: ignore[attr-defined]
         data |= dict(zip(positional, given, strict=False))
         if len(given) > len(positional):
             example = ", ".join(f"{name}=..." for name in list(inspect.signature(cls).parameters)[:max(2, len(given))])
             raise SceneError(cls.__name__, f"takes its values by name, got {len(given)} without one",
                              f"write {cls.__name__}({example})")
-        place, known = cls.title(data), cls.keywords()  # type: ignore[attr-defined]  # of its one user, Part
+        place = cls.title(data)  # type: ignore[attr-defined]
         found = [SceneError(place, *_unknown(name, known), entry=name) for name in data if name not in known]
         try:
             made = super().__call__(**{name: value for name, value in data.items() if name in known})
@@ -123,9 +125,9 @@ class Part(BaseModel, metaclass=_TranslatingType):
         return f'{kind} "{data["name"]}"' if isinstance(data.get("name"), str) else kind
 
     @classmethod
-    def keywords(cls) -> dict[str, str]:
+    def keywords(cls) -> Mapping[str, str]:
         """Return the fields of a part by keyword."""
-        return {field.alias or name: name for name, field in cls.model_fields.items()}
+        return _keywords(cls)
 
     @classmethod
     def is_named(cls) -> bool:
@@ -188,7 +190,7 @@ class Part(BaseModel, metaclass=_TranslatingType):
     @property
     def where(self) -> str:
         """Return its name in messages."""
-        return self.title(dict(self))
+        return self.title(vars(self))
 
     def off_plane(self) -> Iterator[str]:
         """Yield, in words, its quantities and those of its parts that leave the plane z = 0 of a planar scene.
@@ -210,9 +212,15 @@ class Part(BaseModel, metaclass=_TranslatingType):
     def _knows_all_names(cls, data: Any) -> Any:
         if isinstance(data, dict):
             known = cls.keywords()
-            if unknown := next((key for key in data if key not in known), None):
-                raise ValueError(*_unknown(unknown, known))
+            if not data.keys() <= known.keys():
+                raise ValueError(*_unknown(next(key for key in data if key not in known), known))
         return data
+
+
+@cache
+def _keywords(kind: type[Part]) -> Mapping[str, str]:
+    """Return the fields of a kind of part by keyword."""
+    return MappingProxyType({field.alias or name: name for name, field in kind.model_fields.items()})
 
 
 ACROSS = {POINT: slice(2, 3), DIRECTION: slice(2, 3), AXIS: slice(2), ORIENTATION: slice(1, 3)}

@@ -21,7 +21,9 @@ def _inertia(value: Any) -> Matrix:
 
 
 def _check_inertia(matrix: np.ndarray) -> None:
-    small, middle, large = np.linalg.eigvalsh(matrix).tolist()
+    diagonal = matrix.diagonal()
+    is_diagonal = np.count_nonzero(matrix) == np.count_nonzero(diagonal)
+    small, middle, large = sorted(diagonal.tolist()) if is_diagonal else np.linalg.eigvalsh(matrix).tolist()
     shown = show((small, middle, large), "kg m²")
     if not small > 0:
         raise ValueError(f"must be positive, got the principal moments {shown}")

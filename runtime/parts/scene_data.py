@@ -125,7 +125,7 @@ class SceneData:
         except ValueError as error:
             raise SceneError("scene", f"gravity {error}") from None
         for kind in KINDS:
-            setattr(self, kind.group, PartsByName() if kind.is_named() else PartsInOrder())
+            vars(self)[kind.group] = PartsByName() if kind.is_named() else PartsInOrder()
         self._contact_of_pair: dict[tuple[str, str], str] = {}
         self.messages: list[str] = []
         self.title = ""
@@ -293,9 +293,7 @@ class SceneData:
     def copied(self) -> Self:
         """Return a scene of the same parts, to which parts can be added independently."""
         made = copy(self)
-        for name, value in vars(self).items():
-            if isinstance(value, dict | list):
-                setattr(made, name, value.copy())
+        vars(made).update((name, value.copy()) for name, value in vars(self).items() if isinstance(value, dict | list))
         return made
 
     def replaced(self, made: Callable[[Part], Part]) -> Self:

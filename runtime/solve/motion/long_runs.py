@@ -43,8 +43,9 @@ class LongRun:
 
     def __call__(self, reached: float) -> None:
         """Show the progress; for a long run also its rate and end, and once a warning with the cause."""
-        with interruptible():
-            self._progress(reached)
+        if self._progress.is_shown:
+            with interruptible():
+                self._progress(reached)
         now = time.monotonic()
         self._marks.append((now, reached, self._steps))
         if self._steps < MIN_STEPS_FOR_PREDICTION:

@@ -24,6 +24,11 @@ class ProgressDisplay:
     reached: OnProgress = _nothing
     describe: Callable[[str], None] = _nothing
 
+    @property
+    def is_shown(self) -> bool:
+        """Return whether a call does anything."""
+        return self.reached is not _nothing
+
     def __call__(self, time: float) -> None:
         """Show the time reached by the run, in s."""
         self.reached(time)
