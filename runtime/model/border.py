@@ -9,7 +9,7 @@ import numpy as np
 
 from .attachments import AttachmentModel
 from .coupling import CouplingModel
-from .elimination import MAX_DENSE_BORDER, BorderGraph, Elimination, dense
+from .elimination import MAX_DENSE_BORDER, BorderGraph, Elimination, dense_beside
 from .model import Model, SlideModel
 
 NEWTON, ACCELERATIONS = "newton", "accelerations"
@@ -21,8 +21,7 @@ def elimination(model: Model, system: str) -> Elimination:
     m = model.n_border_dof + (model.n_extra if system == NEWTON else model.n_multipliers)
     if m > MAX_DENSE_BORDER:
         return _Border(model, system).graph.eliminate()
-    chains = len(model.chains) - 1
-    return dense(m, np.array(np.divmod(np.arange(m * chains), max(chains, 1))).T)
+    return dense_beside(m, len(model.chains) - 1)
 
 
 class _Place:

@@ -8,12 +8,14 @@ in the number of bodies. Groups that are eliminated together are a front (engine
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from heapq import heapify, heappop, heappush
 from typing import Any
 
 import numpy as np
+
+from .system_layout import SystemLayout
 
 MAX_DENSE_BORDER = 60
 """Unknowns of a border up to which one front is as fast as several."""
@@ -40,6 +42,15 @@ class Elimination:
     front: np.ndarray
     place: np.ndarray
     strips: np.ndarray
+    _layouts: dict[tuple[bytes, int], SystemLayout] = field(default_factory=dict)
+
+    def layout(self, chains: np.ndarray, beyond: int) -> SystemLayout:
+        """Return the layout of a system with this border, once for all scenes of one topology; see `SystemLayout.of`.
+        """
+        key = chains.tobytes(), beyond
+        if key not in self._layouts:
+            self._layouts[key] = SystemLayout.of(self, chains, beyond)
+        return self._layouts[key]
 
     @property
     def n(self) -> int:
@@ -82,6 +93,12 @@ def dense(m: int, strips: np.ndarray) -> Elimination:
     """Return the elimination of m unknowns in one front; strips: see `Elimination`."""
     none, zero, every = np.array([-1]), np.array([0]), np.arange(m)
     return Elimination(m, zero, zero, np.array([m]), zero, every, 0 * every, none, none, none, 0 * every, every, strips)
+
+
+@lru_cache(maxsize=64)
+def dense_beside(m: int, chains: int) -> Elimination:
+    """Return the elimination of m unknowns in one front, all coupled to each of a number of chains."""
+    return dense(m, np.array(np.divmod(np.arange(m * chains), max(chains, 1))).T)
 
 
 class BorderGraph:

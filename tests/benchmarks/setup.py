@@ -28,7 +28,7 @@ from funicular.engine import Engine
 from funicular.integrators import Integrator
 from funicular.model.breakpoints import breakpoints
 from funicular.model.build import build
-from funicular.model.elimination import eliminated
+from funicular.model.elimination import dense_beside, eliminated
 from funicular.model.fewest_operations import ordered
 from funicular.model.redundant_constraints import drop_redundant_rows
 from funicular.parts.settings import RunSettings
@@ -90,8 +90,8 @@ class Clock:
 
 def forget() -> None:
     """Forget the analysis of topologies, so that the next scene is the first of its kind."""
-    eliminated.cache_clear()
-    ordered.cache_clear()
+    for kept in (eliminated, dense_beside, ordered):
+        kept.cache_clear()
 
 
 def set_up(make: Callable[[], Scene], clock: Clock | None = None) -> Engine:

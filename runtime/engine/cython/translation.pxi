@@ -267,15 +267,15 @@ cdef class Translation(Arrays):
         m = &self.model
         m.n_motions, m.motions, m.signals, m.load_fraction = len(model.motions), self.motions, self.signals, 1.0
 
-    cdef _fronts(self, fu_fronts *fronts, elimination):
-        """Fill in the elimination of a border."""
+    cdef _fronts(self, fu_fronts *fronts, elimination, const int *numbers, dict first):
+        """Fill in the elimination of a border; numbers, first: of its layout."""
         fronts.m, fronts.n, fronts.size = elimination.m, elimination.n, elimination.size
-        fronts.start, fronts.first = self._ints(elimination.start), self._ints(elimination.first)
-        fronts.pivots, fronts.neighbours = self._ints(elimination.pivots), self._ints(elimination.neighbours)
-        fronts.unknown, fronts.in_parent = self._ints(elimination.unknown), self._ints(elimination.in_parent)
-        fronts.parent, fronts.child = self._ints(elimination.parent), self._ints(elimination.child)
-        fronts.sibling = self._ints(elimination.sibling)
-        fronts.front, fronts.place = self._ints(elimination.front), self._ints(elimination.place)
+        fronts.start, fronts.first = numbers + <int>first["start"], numbers + <int>first["first"]
+        fronts.pivots, fronts.neighbours = numbers + <int>first["pivots"], numbers + <int>first["neighbours"]
+        fronts.unknown, fronts.in_parent = numbers + <int>first["unknown"], numbers + <int>first["in_parent"]
+        fronts.parent, fronts.child = numbers + <int>first["parent"], numbers + <int>first["child"]
+        fronts.sibling = numbers + <int>first["sibling"]
+        fronts.front, fronts.place = numbers + <int>first["front"], numbers + <int>first["place"]
 
     cdef _factors(self, fu_factors *factors, elimination):
         """Allocate the factors of a border, unless they replace the matrix."""
@@ -290,21 +290,16 @@ cdef class Translation(Arrays):
         factors.start, factors.first = self._int_zeros(n), self._int_zeros(n)
         factors.size, factors.pivots, factors.done = self._int_zeros(n), self._int_zeros(n), self._int_zeros(n)
 
-    cdef _strips(self, fu_system *system, model, strips):
-        """Fill in the coupling of the border with chains, and allocate its memory."""
-        cdef int n = len(strips), chains = len(model.chains) - 1
-        k, chain = strips.T
-        lengths, beyond = np.diff(model.chains)[chain], FU_BAND_BEYOND(system.width)
-        ends, ends_of_x = np.cumsum(lengths), np.cumsum(lengths + beyond)
-        system.n_strips, system.n_strip_rows = n, self._counted(ends[-1] if n else 0)
-        system.strips = <fu_strip *>self._ints(np.stack([
-            k, chain, ends - lengths - model.chains[chain], ends_of_x - lengths - beyond - model.chains[chain]], axis=1))
-        system.first_strip = self._ints(np.searchsorted(k, np.arange(system.m + 1)))
-        on_chain = np.argsort(chain, kind="stable")
-        system.on_chain = self._ints(on_chain)
-        system.chain_start = self._ints(np.searchsorted(chain[on_chain], np.arange(chains + 1)))
+    cdef _strips(self, fu_system *system, layout, int *numbers):
+        """Fill in the coupling of the border with chains, and allocate its memory; numbers: of the layout."""
+        cdef int n = layout.n_strips, chains = system.n_chains
+        cdef dict first = layout.first
+        system.n_strips, system.n_strip_rows = n, self._counted(layout.rows)
+        system.strips = <fu_strip *>(numbers + <int>first["strips"])
+        system.first_strip, system.on_chain = numbers + <int>first["first_strip"], numbers + <int>first["on_chain"]
+        system.chain_start = numbers + <int>first["chain_start"]
         system.B, system.C = self._zeros(system.n_strip_rows), self._zeros(system.n_strip_rows)
-        system.X = self._zeros(self._counted(ends_of_x[-1] if n else 0))
+        system.X = self._zeros(self._counted(layout.rows_of_x))
         system.span_B, system.span_C = <fu_span *>self._int_zeros(2 * 2 * n), <fu_span *>self._int_zeros(2 * 2 * n)
         system.columns, system.rows = <fu_matrix_block *>self._int_zeros(4 * 2 * n), <fu_matrix_block *>self._int_zeros(4 * 2 * n)
         system.factorisations = self._int_zeros(chains)
@@ -319,13 +314,14 @@ cdef class Translation(Arrays):
 
     cdef _system(self, fu_system *system, fu_fronts *fronts, model, elimination, int width):
         cdef int n = model.n_band, m = elimination.m, chains = len(model.chains) - 1
+        layout = elimination.layout(model.chains, FU_BAND_BEYOND(width))
+        cdef int *numbers = self._ints(layout.numbers)
         system.n, system.width, system.m, system.n_chains = n, width, m, chains
-        self._fronts(fronts, elimination)
+        self._fronts(fronts, elimination, numbers, layout.first)
         self._factors(&system.factors, elimination)
-        self._strips(system, model, elimination.strips)
-        system.fronts, system.chains = fronts, self._ints(model.chains)
-        middles = (model.chains[:-1] + model.chains[1:]) // 2
-        system.half = self._ints(np.searchsorted(np.sort([*model.chains[:-1], *middles]), np.arange(n), "right") - 1)
+        self._strips(system, layout, numbers)
+        system.fronts, system.chains = fronts, numbers + <int>layout.first["chains"]
+        system.half = numbers + <int>layout.first["half"]
         system.D, system.mirror = self._zeros(elimination.size + 1.0), self._zeros(n)
         factor = (width + 1.0) * (n + <double>FU_BAND_MORE(width) * chains)
         system.L, system.U = self._zeros(factor), self._zeros(factor)

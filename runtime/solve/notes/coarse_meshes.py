@@ -85,13 +85,12 @@ class _Strains:
         cable, e = self.cable, element_coordinates(self.cable, q)
         energy, h, A = cable.law_kernel("energy"), cable.mesh.lengths, cable.A
         if len(h) == len(A) == 1:
-            whole = energy.rows(e.shape[0] * e.shape[1], h[0], e.reshape(-1, *e.shape[2:]), A[0]).reshape(e.shape[:2])
+            whole = energy.rows(e.shape[0] * e.shape[1], h[0], e.reshape(-1, *e.shape[2:]), A[0])
         else:
             h, A = np.broadcast_to(h, len(self.h)), np.broadcast_to(A, (len(self.h), A.shape[1]))
             whole = np.array([energy.rows(len(self.h), h, each, A) for each in e])
-        whole = whole.sum(axis=1)
         axial = 0.5 * self.EA * np.einsum("p,pte,e->t", STRAIN_WEIGHTS, strain**2, self.h)
-        return np.asarray(np.maximum(whole - axial, 0.0))
+        return np.asarray(np.maximum(whole.reshape(len(e), -1).sum(axis=1) - axial, 0.0))
 
     def motion(self, v: np.ndarray) -> np.ndarray:
         """Return (T,): the kinetic energy at rates v (T, n), in J."""
