@@ -9,7 +9,7 @@ from ..parts.scene_data import SceneData
 from .attachments import ModelBuilder
 from .bodies import body_gravity, body_models, body_weights, configuration_of, dofs_of, velocity_of
 from .border import ACCELERATIONS, NEWTON, elimination
-from .cables import cable_gravity, cable_model, cable_rates, cable_weights, level_tied_slopes
+from .cables import cable_gravity, cable_model, cable_rates, cable_weights, drawn_vectors, level_tied_slopes
 from .coupling import number
 from .cutting import attached
 from .kinds import COUPLINGS
@@ -35,7 +35,7 @@ def build(scene: SceneData, supplied: bool = False) -> Model:
         n_flexible = cables[-1].coordinates.stop
     ropes = rope_models(scene, n_flexible, supplied)
     bodies = body_models(scene, ropes[-1].coordinates.stop if ropes else n_flexible)
-    nodal = [cable.nodal_vectors[..., :dim] for cable in drawn]
+    nodal = [drawn_vectors(cable, dim) for cable in drawn]
     level_tied_slopes(scene, nodal)
     nodes = {model.name: _nodes(model, scene.cables[model.name].where, vectors)
              for model, vectors in zip(cables, nodal, strict=True)}
@@ -57,7 +57,7 @@ def build(scene: SceneData, supplied: bool = False) -> Model:
                   *(velocity_of(body, dim) for body in described)),
         weight=_joined(*map(cable_weights, drawn), *(rope.weight for rope in ropes),
                        *(body_weights(body, dim) for body in described)),
-        gravity=_joined(*(cable_gravity(model, cable, gravity) for model, cable in zip(cables, drawn, strict=True)),
+        gravity=_joined(*(cable_gravity(cable, gravity) for cable in drawn),
                         *(0 * rope.q for rope in ropes),
                         *(body_gravity(body, gravity) for body in bodies)),
         unknown_of_dof=np.append(reduction.unknown_of_dof, beside_cables).astype(int),

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import lru_cache
+
 import numpy as np
 
 from ..kernels.elements import gauge
@@ -14,26 +17,75 @@ from .unknowns import Reduction, as_supports_leave
 
 MAX_SLOPE_DIFFERENCE = 0.01
 """Relative difference of slopes that a rigid tie unites, above which one of the cables is drawn slack."""
+KEPT_CABLES, MAX_KEPT_ELEMENTS = 32, 1000
+"""Number of cables whose arrays are kept for equal ones, as those of variants of a scene, and the most elements of one.
+"""
+
+FORGET: list[Callable[[], None]] = []
+"""Functions that drop the kept arrays, for tests and timings."""
+
+
+def _kept(arrays: Callable[..., np.ndarray]) -> Callable[..., np.ndarray]:
+    """Return a function of a cable, and of tuples, that makes an array, read-only, once for equal cables.
+
+    Elements of cables that are curved without stress have large arrays, each its own, which are not kept.
+    """
+    @lru_cache(maxsize=KEPT_CABLES)
+    def kept(cable: Cable, *given: tuple[float, ...]) -> np.ndarray:
+        made = arrays(cable, *given)
+        made.flags.writeable = False
+        return made
+
+    FORGET.append(kept.cache_clear)
+
+    def of(cable: Cable, *given: tuple[float, ...]) -> np.ndarray:
+        return (kept if cable.elements <= MAX_KEPT_ELEMENTS and not cable.is_curved else arrays)(cable, *given)
+
+    return of
 
 
 def cable_model(cable: Cable, first: int) -> CableModel:
     """Return the model of a cable whose coordinates begin at ``first``."""
-    element, law, mesh = cable.element, cable.kernel_law, cable.mesh
-    kernels, vectors = kernels_of(cable.library), cable.kind_of_element.nodal_vectors
-    mass, moments = getattr(kernels, f"{element}_mass"), cable.section.mass_moments()
-    m = np.array([mass(length, cable.material.density, moments) for length in mesh.lengths])
+    vectors = cable.kind_of_element.nodal_vectors
     return CableModel(
-        cable.name, element, law, mesh, first, cable.material.damping_time,
-        cable.material.mass_damping, m, constants(cable), (cable.elements + 1, len(vectors), cable.dim), vectors,
-        cable.library)
+        cable.name, cable.element, cable.kernel_law, cable.mesh, first, cable.material.damping_time,
+        cable.material.mass_damping, _mass(cable), _constants(cable), (cable.elements + 1, len(vectors), cable.dim),
+        vectors, cable.library)
 
 
-def cable_gravity(model: CableModel, cable: Cable, gravity: np.ndarray) -> np.ndarray:
+@_kept
+def _mass(cable: Cable) -> np.ndarray:
+    """Return m of a `CableModel`."""
+    mass, moments = getattr(kernels_of(cable.library), f"{cable.element}_mass"), cable.section.mass_moments()
+    return np.array([mass(length, cable.material.density, moments) for length in cable.mesh.lengths])
+
+
+_constants = _kept(constants)
+
+
+@_kept
+def _nodal_vectors(cable: Cable) -> np.ndarray:
+    """Return its nodal vectors as drawn."""
+    return cable.nodal_vectors
+
+
+def drawn_vectors(cable: Cable, dim: int) -> np.ndarray:
+    """Return (nodes, vectors, dim): its nodal vectors as drawn."""
+    return _nodal_vectors(cable)[..., :dim].copy()
+
+
+def cable_gravity(cable: Cable, gravity: np.ndarray) -> np.ndarray:
     """Return (coordinates,): generalised gravity of a cable."""
-    kernel, moments = model.kernel("gravity"), cable.section.mass_moments()
-    each = np.array([kernel(length, cable.material.density, moments, gravity).reshape(2, *model.shape[1:])
-                     for length in model.mesh.lengths])
-    weight = np.zeros(model.shape)
+    return _gravity(cable, tuple(gravity.tolist()))
+
+
+@_kept
+def _gravity(cable: Cable, gravity: tuple[float, ...]) -> np.ndarray:
+    kernel, moments = getattr(kernels_of(cable.library), f"{cable.element}_gravity"), cable.section.mass_moments()
+    vectors = len(cable.kind_of_element.nodal_vectors)
+    each = np.array([kernel(length, cable.material.density, moments, gravity).reshape(2, vectors, cable.dim)
+                     for length in cable.mesh.lengths])
+    weight = np.zeros((cable.elements + 1, vectors, cable.dim))
     weight[:-1] += each[:, 0]
     weight[1:] += each[:, 1]
     return weight.ravel()
@@ -63,6 +115,7 @@ def cable_rates(scene: SceneData, reduction: Reduction) -> np.ndarray:
     return as_supports_leave(asked, reduction.unknown_of_dof, reduction.combinations)
 
 
+@_kept
 def cable_weights(cable: Cable) -> np.ndarray:
     """Return the displacement of a point by a unit of each nodal vector: 1 for positions, lengths for slopes, those of
     the longer element at the node.

@@ -25,6 +25,7 @@ from .states import (
     modal_state,
     point_force_state,
     spatial,
+    support_force,
     support_reaction,
     tie_force,
 )
@@ -127,7 +128,8 @@ def _connections(model: Model, scene: SceneData, at: States, asked: Asked) -> di
             couplings[kind.group] |= RESULTS.get(kind.name, _outputs)(model, at, kind.name, asked)
     return {
         Slide.group: couplings.pop(Slide.group),
-        "pins": {label: {"force": of["force"]} for label, of in reactions(scene.pins).items()},
+        "pins": {pin.label: {"force": support_force(model, scene, pin, at.reaction)} for pin in scene.pins
+                 if asked(pin.label)},
         "clamps": reactions(scene.clamps),
         "motions": reactions(scene.motions),
         "ties": {name: tie_force(model, scene, tie, at.reaction, at.q) for name, tie in scene.ties.items()

@@ -22,7 +22,9 @@ from .unknowns import Node
 
 
 def spatial(vectors: np.ndarray) -> np.ndarray:
-    """Return vectors (..., 2 or 3) as spatial ones, (..., 3)."""
+    """Return vectors (..., 2 or 3) as spatial ones, (..., 3), a copy."""
+    if vectors.shape[-1] == 3:
+        return vectors.copy()
     return np.concatenate([vectors, np.zeros((*vectors.shape[:-1], 3 - vectors.shape[-1]))], axis=-1)
 
 
@@ -32,20 +34,36 @@ def force_and_moment(nodes: Iterable[Node], reaction: np.ndarray, q: np.ndarray)
     reaction, q: (time, dofs) generalised forces and configuration. Returns force, moment (time, 3) in N, N m: the
     moment is the sum of r_k x f_k over the slopes.
     """
-    force, moment = np.zeros((len(q), 3)), np.zeros((len(q), 3))
+    nodes, moment = [*nodes], np.zeros((len(q), 3))
     for node in nodes:
-        force += spatial(reaction[:, node.dofs("r")])
         for name in {"r_x", "r_y", "r_z"} & set(node.names):
             at = node.dofs(name)
             moment += cross(spatial(q[:, at]), spatial(reaction[:, at]))
-    return {"force": force, "moment": moment}
+    return {"force": _force(nodes, reaction), "moment": moment}
+
+
+def _force(nodes: Iterable[Node], reaction: np.ndarray) -> np.ndarray:
+    """Return the force (time, 3) in N of supports or ties on nodes, from generalised forces (time, dofs)."""
+    force = np.zeros((len(reaction), 3))
+    for node in nodes:
+        force += spatial(reaction[:, node.dofs("r")])
+    return force
 
 
 def support_reaction(model: Model, scene: SceneData, part: Support, reaction: np.ndarray,
                      q: np.ndarray) -> dict[str, np.ndarray]:
     """Return the force and moment of a pin, clamp or motion on its node and the nodes joined to it."""
-    nodes = joined(scene, node_of(scene, part))
-    return force_and_moment([model.nodes[cable][k] for cable, k in nodes], reaction, q)
+    return force_and_moment(_supported(model, scene, part), reaction, q)
+
+
+def support_force(model: Model, scene: SceneData, part: Support, reaction: np.ndarray) -> np.ndarray:
+    """Return the force (time, 3) in N of `support_reaction` alone, as that of a pin."""
+    return _force(_supported(model, scene, part), reaction)
+
+
+def _supported(model: Model, scene: SceneData, part: Support) -> list[Node]:
+    """Return the node of a support and the nodes joined to it."""
+    return [model.nodes[cable][k] for cable, k in joined(scene, node_of(scene, part))]
 
 
 def tie_force(model: Model, scene: SceneData, tie: Tie, reaction: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:

@@ -28,6 +28,7 @@ from funicular.engine import Engine
 from funicular.integrators import Integrator
 from funicular.model.breakpoints import breakpoints
 from funicular.model.build import build
+from funicular.model.cables import FORGET
 from funicular.model.elimination import dense_beside, eliminated
 from funicular.model.fewest_operations import ordered
 from funicular.model.redundant_constraints import drop_redundant_rows
@@ -89,9 +90,9 @@ class Clock:
 
 
 def forget() -> None:
-    """Forget the analysis of topologies, so that the next scene is the first of its kind."""
-    for kept in (eliminated, dense_beside, ordered):
-        kept.cache_clear()
+    """Forget the analysis of topologies and arrays of cables, so that the next scene is the first of its kind."""
+    for drop in (eliminated.cache_clear, dense_beside.cache_clear, ordered.cache_clear, *FORGET):
+        drop()
 
 
 def set_up(make: Callable[[], Scene], clock: Clock | None = None) -> Engine:

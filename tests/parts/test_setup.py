@@ -14,7 +14,7 @@ from funicular.model.redundant_constraints import _in_loops
 from funicular.solve.motion import integrator_choice
 from setup import bodies, calls, rope, set_up
 
-CEILINGS = {"paper51": (4400, 1850), "cable_car": (9800, 4700), "zip_line": (6700, 3100)}
+CEILINGS = {"paper51": (4030, 1490), "cable_car": (8670, 4300), "zip_line": (6200, 2850)}
 """Calls of Python and C functions that it takes to make a scene and to set its run up, an eighth above those counted; a
 ceiling moves up only on purpose.
 """

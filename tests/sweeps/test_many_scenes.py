@@ -12,7 +12,9 @@ import pytest
 from choice_scenes import SCENES
 from funicular.solve.motion import run as solve_run
 from funicular.sweeps import many_scenes
+from setup import forget
 from shared_scenes import cable_scene, one_rider
+from sliding import sliding_mass
 
 DURATION = 0.05
 SETTINGS = {"duration": DURATION, "tol": 1e-3, "output_step": 0.01}
@@ -234,3 +236,21 @@ def test_other_shapes_and_dearer_scenes_have_their_own_trials(monkeypatch):
     tried = counted_trials(monkeypatch)
     list(fu.run_many([first, finer, stiffer, first], threads=2, **LOST))
     assert tried == ["radau"] * 3
+
+
+@pytest.mark.parametrize("integrator", ["genalpha", "radau"])
+def test_a_run_keeps_its_bits_after_runs_of_its_shape(integrator):
+    """Arrays of equal cables and of the topology are kept; those of other cables and of another topology are not used.
+    """
+    def positions(elements: int, mass: float, density: float) -> np.ndarray:
+        scene = sliding_mass(elements, mass=mass).replace("wire", material=fu.Material(
+            youngs_modulus=0.4e9, poisson_ratio=0.0, density=density))
+        return scene.run(0.05, tol=1e-3, integrator=integrator, progress=False)["A.position"]
+
+    variants = [(3, 1.0, 4200.0), (3, 2.0, 4200.0), (3, 1.0, 5000.0), (4, 1.0, 4200.0)]
+    alone = []
+    for variant in variants:
+        forget()
+        alone.append(positions(*variant))
+    assert all(np.array_equal(positions(*variant), each) for variant, each in zip(variants, alone, strict=True))
+    assert len({each.tobytes() for each in alone}) == len(variants)

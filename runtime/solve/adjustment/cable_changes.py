@@ -76,7 +76,7 @@ class Own:
 
     def of(self, cable: Cable) -> np.ndarray:
         """Return (coordinates,): those of the cable with another section or material."""
-        weight = cable_gravity(self.model, cable, self.gravity)
+        weight = cable_gravity(cable, self.gravity)
         return np.asarray(elastic_force(self.model, constants(cable), self.q) - weight)
 
 

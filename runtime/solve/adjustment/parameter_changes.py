@@ -122,7 +122,7 @@ class Changes:
         if any(self.rest.names(cable.name, NOT_SCALING_GROUPS) or not hangs_plainly(self.rest, cable)
                for cable in hanging):
             return None
-        cables = [cable_gravity(model, self.scene.cables[model.name], direction) for model in self.model.cables]
+        cables = [cable_gravity(self.scene.cables[model.name], direction) for model in self.model.cables]
         bodies = [body_gravity(body, direction) for body in self.model.bodies]
         change = Change(self.model)
         change.f -= np.concatenate([*cables, *bodies])
