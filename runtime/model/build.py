@@ -9,7 +9,7 @@ from ..parts.scene_data import SceneData
 from .attachments import ModelBuilder
 from .bodies import body_gravity, body_models, body_weights, configuration_of, dofs_of, velocity_of
 from .border import ACCELERATIONS, NEWTON, elimination
-from .cables import cable_gravity, cable_model, cable_rates, cable_weights, drawn_vectors, level_tied_slopes
+from .cables import cable_gravity, cable_model, cable_rates, cable_weights, drawn_vectors, kept_cable, level_tied_slopes
 from .coupling import number
 from .cutting import attached
 from .kinds import COUPLINGS
@@ -27,7 +27,7 @@ def build(scene: SceneData, supplied: bool = False) -> Model:
     """
     assert scene.plane is None, "a scene in another plane is laid into z = 0 first"
     dim, gravity = scene.dim, np.array(scene.gravity)[: scene.dim]
-    drawn, described = list(scene.cables.values()), list(scene.bodies.values())
+    drawn, described = list(map(kept_cable, scene.cables.values())), list(scene.bodies.values())
     cables: list[CableModel] = []
     n_flexible = 0
     for cable in drawn:

@@ -25,6 +25,15 @@ FORGET: list[Callable[[], None]] = []
 """Functions that drop the kept arrays, for tests and timings."""
 
 
+@lru_cache(maxsize=KEPT_CABLES)
+def kept_cable(cable: Cable) -> Cable:
+    """Return the first of equal cables, which is found again without comparison of its entries."""
+    return cable
+
+
+FORGET.append(kept_cable.cache_clear)
+
+
 def _kept(arrays: Callable[..., np.ndarray]) -> Callable[..., np.ndarray]:
     """Return a function of a cable, and of tuples, that makes an array, read-only, once for equal cables.
 

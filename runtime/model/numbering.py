@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -37,8 +38,17 @@ def ranges(first: np.ndarray, counts: np.ndarray) -> np.ndarray:
 def as_drawn(elements: np.ndarray, unknown_of_dof: np.ndarray) -> Numbering:
     """Return the numbering of unknowns in the order of their dofs.
 
-    elements (n, 2): first dof and number of dofs of each; unknown_of_dof: increasing numbers of unknowns, or -1.
+    elements (n, 2): first dof and number of dofs of each; unknown_of_dof: increasing numbers of unknowns, or -1. Scenes
+    of one topology share it.
     """
+    return numbered_once(*(np.asarray(each, int).tobytes() for each in (elements, unknown_of_dof)))
+
+
+@lru_cache(maxsize=32)
+def numbered_once(*given: bytes) -> Numbering:
+    """Return `as_drawn` of arrays of these bytes."""
+    flat, unknown_of_dof = (np.frombuffer(each, int) for each in given)
+    elements = flat.reshape(-1, 2)
     before = np.append(0, np.cumsum(unknown_of_dof >= 0))  # unknowns before a dof
     n = int(before[-1])
     return _numbering(before[elements[:, 0]], before[elements[:, 0] + elements[:, 1]] - 1, np.arange(n), n)

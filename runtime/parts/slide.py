@@ -120,7 +120,9 @@ class Slide(Part):
     @property
     def rider(self) -> Attachment:
         """Return the attachment that rides."""
-        return Attachment(on=self.body, at=self.at) if self.body_s is None else Attachment(on=self.body, s=self.body_s)
+        if self.body_s is None:  # both of checked entries, in a third of the time of another check
+            return Attachment.model_construct(on=self.body, at=self.at)
+        return Attachment.model_construct(on=self.body, s=self.body_s)
 
     @property
     def arc_length(self) -> float:

@@ -31,6 +31,7 @@ from funicular.model.build import build
 from funicular.model.cables import FORGET
 from funicular.model.elimination import dense_beside, eliminated
 from funicular.model.fewest_operations import ordered
+from funicular.model.numbering import numbered_once
 from funicular.model.redundant_constraints import drop_redundant_rows
 from funicular.parts.settings import RunSettings
 from funicular.solve.motion.event_handler import EventHandler
@@ -91,7 +92,9 @@ class Clock:
 
 def forget() -> None:
     """Forget the analysis of topologies and arrays of cables, so that the next scene is the first of its kind."""
-    for drop in (eliminated.cache_clear, dense_beside.cache_clear, ordered.cache_clear, *FORGET):
+    for kept in (eliminated, dense_beside, ordered, numbered_once):
+        kept.cache_clear()
+    for drop in FORGET:
         drop()
 
 
