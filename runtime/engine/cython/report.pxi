@@ -60,7 +60,7 @@ cdef class Report(Statics):
                            "step": s.time_step, "error": s.time_error, "output": s.time_output}}
 
     def costs(self):
-        """Return (couplings,): seconds of each per step, measured in about 0.1 ms (run/part_timing.c)."""
+        """Return (couplings,): seconds of each per step, measured in 0.1 ms or 2 % of the run (run/part_timing.c)."""
         cdef double[::1] seconds = np.zeros(self.model.n_couplings + 1)
         fu_part_timing(&self.run, &seconds[0])
         return np.asarray(seconds)[:self.model.n_couplings]

@@ -8,6 +8,7 @@
 #include <math.h>
 
 #define BUDGET 1e-4      /* s, for all timings */
+#define MAX_SHARE 0.02   /* of the time of the run that all timings may take: short runs are timed more coarsely */
 #define BATCHES 4        /* of calls, of which the fastest counts, since the machine may be busy */
 #define MAX_CALLS 100    /* calls in a batch */
 #define MIN_CALLS 3      /* minimum of calls, each timed alone, since the machine may interrupt one */
@@ -50,6 +51,13 @@ static double timed(fu_run *run, const fu_coupling *c, int what, double budget)
     return fastest;
 }
 
+/* Returns the budget of all timings, s. */
+static double budget_of(const fu_statistics *s)
+{
+    const double taken = s->time_factor + s->time_solve + s->time_residual + s->time_step + s->time_error;
+    return fmin(BUDGET, MAX_SHARE * taken);
+}
+
 /* Computes the seconds per step of each coupling. */
 void fu_part_timing(fu_run *run, double *seconds)
 {
@@ -63,6 +71,6 @@ void fu_part_timing(fu_run *run, double *seconds)
         for (int what = 0; what < WORKS; ++what)
             if (counts[what] > 0.0 && s->steps > 0)
                 seconds[c->number] += counts[what] / (double)s->steps *
-                                      timed(run, c, what, BUDGET / (double)(model->n_couplings * WORKS));
+                                      timed(run, c, what, budget_of(s) / (double)(model->n_couplings * WORKS));
     }
 }
