@@ -132,7 +132,7 @@ class Part(BaseModel, metaclass=_TranslatingType):
     @classmethod
     def is_named(cls) -> bool:
         """Return whether such parts have names."""
-        return "name" in cls.model_fields
+        return "name" in _keywords(cls)
 
     def entries(self) -> dict[str, Any]:
         """Return its entries by keyword, defaults included, None left out."""

@@ -46,25 +46,25 @@ class LongRun:
         if self._progress.is_shown:
             with interruptible():
                 self._progress(reached)
-        now = time.monotonic()
-        self._marks.append((now, reached, self._steps))
-        if self._steps < MIN_STEPS_FOR_PREDICTION:
+        now, steps = time.monotonic(), self._engine.n_steps
+        self._marks.append((now, reached, steps))
+        if steps < MIN_STEPS_FOR_PREDICTION:
             return
         while len(self._marks) > 2 and now - self._marks[1][0] > RATE_WINDOW:
             self._marks.popleft()
         since, start, before = self._marks[0]
-        made = self._steps - before
+        made = steps - before
         if made < MIN_STEPS_FOR_PREDICTION or reached <= start or now <= since:
             return
         more = (self._settings.duration - reached) * made / (reached - start)
-        if self._steps + more <= MANY_STEPS_LIMIT:
+        if steps + more <= MANY_STEPS_LIMIT:
             return
         rate = made / (now - since)
-        self._progress.describe(f"{self._steps:.3g} of about {self._steps + more:.2g} steps, {rate:.2g} a second, "
+        self._progress.describe(f"{steps:.3g} of about {steps + more:.2g} steps, {rate:.2g} a second, "
                          f"{_duration(more / rate)} left")
         if not self._warned:
             self._warned = True
-            warnings.warn(f"the run needs about {self._steps + more:.2g} steps, {_duration(more / rate)} at the "
+            warnings.warn(f"the run needs about {steps + more:.2g} steps, {_duration(more / rate)} at the "
                           f"present rate of {rate:.2g} a second: {self._why()}", FunicularWarning, stacklevel=6)
 
     def notes(self) -> list[str]:

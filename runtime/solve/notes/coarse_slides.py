@@ -73,15 +73,16 @@ class CoarseSlides(Note):
         arc-lengths s (T,) and forces on the rider (T,) in N.
         """
         at = self._on_cable(slide, q, s) if slide.coordinates is None else _on_rope(slide.coordinates, q, s)
-        lengths = np.linalg.norm(at.before, axis=-1) * np.linalg.norm(at.after, axis=-1)
-        cosine = np.einsum("td,td->t", at.before, at.after) / np.where(lengths > 0, lengths, 1.0)
+        square, other, product = (np.einsum("td,td->t", one, two) for one, two in (
+            (at.before, at.before), (at.after, at.after), (at.before, at.after)))
+        cosine = product / np.maximum(np.sqrt(square) * np.sqrt(other), np.finfo(float).tiny)
         half = np.maximum(np.arccos(np.minimum(np.maximum(cosine, -1), 1)) / 2, ROUNDING)
         of = self._stiffness(slide)
         tension = np.maximum(np.maximum(of.EA * at.strain, force / (2 * np.sin(half))), 1e-300)
         angle = 2 * np.arcsin(np.minimum(force / (2 * tension), 1.0))
         longer = at.h * np.sqrt(tension / of.EI_strong)
         error = np.where(longer > 1, np.minimum(LENGTH_FACTOR * longer, ANGLE_FACTOR) * angle**2, 0.0)
-        return np.stack([error, angle, tension], axis=1), at.h
+        return np.array([error, angle, tension]).T, at.h
 
     def _on_cable(self, slide: SlideModel, q: np.ndarray, s: np.ndarray) -> _Beside:
         cable = self.model.cables[slide.cable]
@@ -92,7 +93,8 @@ class CoarseSlides(Note):
         mean = np.zeros((len(q), n + 1))
         np.cumsum(middle_strain(cable, nodal), axis=1, out=mean[:, 1:])
         strain = (mean[rows, last] - mean[rows, first]) / (last - first)
-        return _Beside(slopes[rows, first], slopes[rows, last], strain, np.broadcast_to(cable.mesh.lengths, n)[element])
+        h = np.full(len(q), cable.mesh.mean) if cable.mesh.is_even else cable.mesh.lengths[element]
+        return _Beside(slopes[rows, first], slopes[rows, last], strain, h)
 
     def _line(self, slide: SlideModel) -> Cable | Rope:
         """Return the cable or rope of a slide."""
