@@ -123,7 +123,7 @@ class Scene(Viewable, DescribedScene):
         if state is not None:
             given["initial"] = "state" if isinstance(initial, Mapping) else "equilibrium"
         settings = RunSettings(**overridden(self.run_settings, given))
-        if "save" not in given:
+        if "save" not in given and self.run_settings.get("save") is not None:
             settings = settings.model_copy(update={"save": self.run_settings.get("save")})  # as the file has it
         if settings.initial == "state" and state is None:
             raise SceneError("run", 'initial = "state" needs a state', "give what run.at() or equilibrium() returned")

@@ -28,6 +28,7 @@ cdef class Translation(Arrays):
     cdef fu_fronts newton_fronts, mass_fronts
     cdef object newton_elimination
     cdef dict static_forces  # by kind of coupling: largest number of internal forces in static states
+    cdef dict numbers  # of the couplings of each kind
 
     def __cinit__(self, model, blocks=True):
         self.cables = <fu_cable *>PyMem_Calloc(len(model.cables) + 1, sizeof(fu_cable))
@@ -181,14 +182,14 @@ cdef class Translation(Arrays):
         cdef size_t at = 0
         cdef fu_coupling *coupling
         cdef int n = len(model.couplings)
-        counts, self.static_forces = {}, dict.fromkeys(OUTPUTS, 0)
+        self.numbers, self.static_forces = {}, dict.fromkeys(OUTPUTS, 0)
         for k, given in enumerate(model.couplings):
             coupling = self.couplings[k] = <fu_coupling *>(self.coupling_memory + at)
             coupling.type = _type_of(given)
             fu_bind_events(coupling)
             kind = self._kind(coupling)
-            coupling.index = counts.setdefault(kind, 0)
-            counts[kind] += 1
+            coupling.index = len(self.numbers.setdefault(kind, []))
+            self.numbers[kind].append(k)
             self._fields(<char *>coupling, fu_coupling_fields, given, tables)
             self._fields(<char *>coupling, coupling.type.fields, given, tables)
             start = coupling.type.start
@@ -206,8 +207,7 @@ cdef class Translation(Arrays):
 
     cdef list _of(self, str kind):
         """Return the numbers of the couplings of a kind."""
-        cdef int i
-        return [i for i in range(self.model.n_couplings) if self._kind(self.couplings[i]) == kind]
+        return self.numbers.get(kind, [])
 
     cdef int _fields(self, char *structure, const fu_field *field, given, list tables) except -1:
         """Fill in the fields of a list, which ends with one without a name, from the entries or attributes of these names."""

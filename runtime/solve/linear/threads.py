@@ -50,17 +50,19 @@ class _OneBlasThread:
         with self._lock:
             if self._inside == 0:
                 blas = _blas()
-                _let_this_thread_set_limits()
-                self._limiter = blas.limit(limits=1)
+                if any(library.num_threads != 1 for library in blas.lib_controllers):
+                    _let_this_thread_set_limits()
+                    self._limiter = blas.limit(limits=1)
             self._inside += 1
 
     def __exit__(self, *exception: object) -> None:
         with self._lock:
             self._inside -= 1
-            if self._inside == 0:
+            if self._inside == 0 and self._limiter is not None:
                 _let_this_thread_set_limits()
                 self._limiter.restore_original_limits()
                 _let_this_thread_set_limits()  # and who had set limits before
+                self._limiter = None
 
 
 one_blas_thread = _OneBlasThread()
