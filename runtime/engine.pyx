@@ -308,17 +308,23 @@ cdef class Engine(Report):
         c = self.couplings[<int>numbers[0]]
         return output[:, c.output:c.output + len(numbers) * width].reshape(len(output), len(numbers), width)
 
-    def advance(self, on_progress, int every=0, stream=None, double interval=0.05, long most_evaluations=0):
+    def advance(self, on_progress, int every=0, stream=None, double interval=0.05, long most_evaluations=0,
+                bint shown=True):
         """Run to the end; return the status, "interrupted" after Ctrl-C, "running" after most_evaluations of eq 38.
 
         every: number of output rows after which the run pauses in a state that `checkpoint` can store, and calls
-        stream.pause(). stream.between() is called at intervals (s) and may take rows.
+        stream.pause(). stream.between() is called at intervals (s) and may take rows. on_progress is called with the time
+        reached at intervals, and if it is shown at pauses, too.
         """
         cdef int status = FU_RUNNING
         self._check_started()
         run = &self.run
         run.most_evaluations = most_evaluations
+        run.record.every = 0 if shown or stream is not None else every
         try:
+            if run.record.every:  # it may be done before the next look at signals
+                PyErr_CheckSignals()
+                check_interrupted()
             while status == FU_RUNNING:
                 run.record.pause = (run.record.n // every + 1) * every if every else 0
                 with nogil:

@@ -4,7 +4,7 @@ import sys
 
 import numpy as np
 import pytest
-from funicular import Circle, FunicularWarning, Material, Scene, TableSignal
+from funicular import Circle, FunicularWarning, Material, Scene, TableSignal, load_scene
 from funicular.solve.motion import long_runs
 from shared_scenes import cable_scene
 
@@ -57,3 +57,15 @@ def test_knots_of_a_table_are_named_as_what_the_steps_are_for(monkeypatch):
     notes = scene.run(0.1, tol=1e-3, output_step=0.05, integrator="radau").report["messages"]
     message = "a step ends at each of the 999 breakpoints of signals so far. Give tables fewer samples"
     assert any(message in note for note in notes)
+
+
+@pytest.mark.parametrize("integrator", ["genalpha", "radau"])
+def test_progress_changes_no_bit(integrator):
+    """Without a display the engine pauses by itself, where it returns with one."""
+    times: list[float] = []
+    shown, quiet = (load_scene("paper51").run(0.4, output_step=0.02, tol=1e-3, integrator=integrator, progress=each)
+                    for each in (times.append, False))
+    assert len(times) >= 20
+    assert shown.report["factorisations"] == quiet.report["factorisations"]
+    for name, values in quiet.items():
+        assert shown[name].tobytes() == values.tobytes(), name

@@ -23,6 +23,7 @@ typedef struct {
     int n;     /* rows recorded since the start */
     int first; /* the first row in the arrays: earlier ones have been removed */
     int pause; /* the number of rows at which fu_advance returns, for the caller to call fu_pause */
+    int every; /* fu_advance pauses and goes on at that number and after each of these rows; 0: it returns */
 #define FU_MEMBER(name, axes, items) double *name;
     FU_RECORD_ARRAYS(FU_MEMBER)
 #undef FU_MEMBER

@@ -250,7 +250,7 @@ cdef extern from * nogil:
         long steps, rejected, newton_iterations, factorisations, node_passages, newton_failures, evaluations
         double h_min, h_max, error_sum, time_factor, time_solve, time_residual, time_output, time_step, time_error
     ctypedef struct fu_record:
-        int n, first, pause
+        int n, first, pause, every
     fu_array fu_record_array(const fu_model *model, const fu_record *record, int k)
     void fu_record_attach(fu_record *record, int k, double *data)
     ctypedef struct fu_weights:

@@ -48,6 +48,16 @@ static int record(fu_run *run, double target)
     return fu_record_row(run);
 }
 
+/* Pauses after a row, unless the caller does; returns whether the caller takes over. */
+static int pauses(fu_run *run)
+{
+    fu_record *r = &run->record;
+    if (!r->every) return 1;
+    fu_pause(run);
+    r->pause += r->every;
+    return fu_has_worked(run);
+}
+
 static int advance(fu_run *run, double seconds)
 {
     const double until = fu_clock() + seconds;
@@ -59,7 +69,8 @@ static int advance(fu_run *run, double seconds)
             const int recorded = record(run, target);
             if (recorded) return recorded;
             if (target == run->duration) return FU_DONE;
-            if (run->record.n == run->record.pause || fu_clock() > until) return FU_RUNNING;
+            if (run->record.n == run->record.pause && pauses(run)) return FU_RUNNING;
+            if (fu_clock() > until) return FU_RUNNING;
         } else {
             const int status = approach(run, target);
             if (status == FU_EVENT) return status;

@@ -41,6 +41,11 @@ class LongRun:
         self._marks: deque[tuple[float, float, int]] = deque([(time.monotonic(), engine.time, self._steps)])
         self._warned = False
 
+    @property
+    def is_shown(self) -> bool:
+        """Return whether the progress is shown."""
+        return self._progress.is_shown
+
     def __call__(self, reached: float) -> None:
         """Show the progress; for a long run also its rate and end, and once a warning with the cause."""
         if self._progress.is_shown:

@@ -285,7 +285,7 @@ def _divided_step(settings: RunSettings) -> list[str]:
 
 def _ended(run: _Begun, every: int, stream: RowStream | None) -> str:
     """Return the status where a run ends; a drum that has run empty may stop it as an event does."""
-    status = run.engine.advance(run.observer, every, stream)
+    status = run.engine.advance(run.observer, every, stream, shown=run.observer.is_shown)
     if status == "rope_left" and run.engine.left[1] == EMPTY and run.event_handler.stops_empty(run.engine.left[0]):
         return "event"
     return str(status)

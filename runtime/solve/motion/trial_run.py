@@ -58,7 +58,7 @@ def on_trial(engine: Engine, rival: Rival, method: Integrator, duration: float, 
     before, shares, motion = engine.time, 0, 0.0
     while True:
         shares += 1
-        status = engine.advance(observer, every, stream, most_evaluations=shares * share)
+        status = engine.advance(observer, every, stream, most_evaluations=shares * share, shown=observer.is_shown)
         time = engine.time
         if status != "running" or time >= TRIAL_DURATION_FRACTION * duration:
             return status, "", 0.0
