@@ -81,16 +81,11 @@ def main() -> None:
     options = options.parse_args()
     warnings.simplefilter("ignore", FunicularWarning)  # coarse steps are meant
     wanted = [case for case in cases() if (case.name, case.elements) in SCENES]
-    calls = [call for case in few(wanted) for call in measured(case, options.limit)]
-    times: list[tuple[list, list]] = [([], []) for _ in calls]
-    for _ in range(options.repetitions + 1):
-        for (_, own, other), (of_ours, of_theirs) in zip(calls, times, strict=True):
-            of_ours.append(own())
-            of_theirs.append(other())
     rows = []
-    for (row, _, _), each in zip(calls, times, strict=True):
+    for row, own, other in (call for case in few(wanted) for call in measured(case, options.limit)):
+        pairs = [(own(), other()) for _ in range(options.repetitions + 1)][1:]
         (solver, whole), (their_solver, their_whole) = (
-            (1e3 * min(part) for part in zip(*of[1:], strict=True)) for of in each)
+            (1e3 * min(part) for part in zip(*times, strict=True)) for times in zip(*pairs, strict=True))
         rows.append(row | {"our solver / ms": solver, "our call / ms": whole, "their solver / ms": their_solver,
                            "their call / ms": their_whole, "times faster, solver": their_solver / solver,
                            "times faster, call": their_whole / whole})

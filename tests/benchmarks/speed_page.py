@@ -55,7 +55,16 @@ second.""",
                text="""The settings: integrator and `tol` (or fixed step in s) of funicular; steps of Exudyn; time
 of `integrator="auto"` over that of the best other integrator.
 
-![Error over CPU time of both, case by case](exudyn_side_by_side.png)""")]),
+![Error over CPU time of both, case by case](exudyn_side_by_side.png)"""),
+         Table("exudyn_whole_calls",
+               {"case": "scene", "elements": "elements", "error": "error", "setting": "setting",
+                "their steps": "their steps", "our solver / ms": "solver, ms", "their solver / ms": "theirs, ms",
+                "times faster, solver": "ratio", "our call / ms": "whole call, ms", "their call / ms": "theirs, ms",
+                "times faster, call": "ratio"},
+               text="""Whole calls beside their solvers, at loose errors and with few elements, where set-up counts: the
+description of the scene, its set-up, the run, and in funicular labelled results at 51 times with the notes on them; in
+Exudyn the description, the assembly and the run, without outputs. CPU ms, the least of alternating repetitions; the
+fastest setting that reaches the error counts, without interpolation.""")]),
     Section(
         "Rods beside PyElastica and MuJoCo",
         """The experiments of [cosseratbench](https://pypi.org/project/cosseratbench): the error that each

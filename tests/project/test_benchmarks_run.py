@@ -14,7 +14,8 @@ from validation_page import STUDIES
 FOLDER = Path(__file__).parents[1] / "benchmarks"
 MAIN = {path.stem for path in FOLDER.glob("*.py") if '\nif __name__ == "__main__"' in path.read_text("utf-8")}
 SCRIPTS = sorted(MAIN - {"print_pages"})
-PEERS = {"exudyn_side_by_side": "exudyn", "many_scenes": "exudyn", "cosserat": "cosseratbench", "page": "playwright",
+PEERS = {"exudyn_side_by_side": "exudyn", "exudyn_whole_calls": "exudyn", "many_scenes": "exudyn",
+         "cosserat": "cosseratbench", "page": "playwright",
          "sweep": "distributed", "mooring_lines": "moordyn"}
 """What some of them need besides."""
 TABLES = [table for section in [*SPEED, *STUDIES] for table in section.tables]
