@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from .elimination import Elimination  # which keeps the layouts
 
 OF_FRONTS = ("start", "first", "pivots", "neighbours", "unknown", "in_parent", "parent", "child", "sibling", "front",
              "place")
 """Arrays of an elimination that the engine reads."""
+
+
+class Fronts(Protocol):
+    """The elimination of m unknowns, which has the arrays `OF_FRONTS` and the strips of `elimination.Elimination`."""
+
+    m: int
+    strips: np.ndarray
 
 
 @dataclass
@@ -30,7 +34,7 @@ class SystemLayout:
     rows_of_x: int
 
     @classmethod
-    def of(cls, elimination: Elimination, chains: np.ndarray, beyond: int) -> SystemLayout:
+    def of(cls, elimination: Fronts, chains: np.ndarray, beyond: int) -> SystemLayout:
         """Return the layout; chains: as in `Numbering`; beyond: rows that the engine adds to each strip of X."""
         k, chain = elimination.strips.T
         lengths = np.diff(chains)[chain]
