@@ -2,38 +2,40 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ...model.model import Model
-
-if TYPE_CHECKING:
-    from scipy.sparse import csc_array, csr_array
+from .matrices import dense, row_maxima
 
 DEPENDENCE_TOLERANCE = 1e-9
 """Part of a contact's row that is independent of the others, as a fraction of the largest, below which they imply
 it."""
 
 
-def fastest(K: csc_array, M: csc_array, unknowns: np.ndarray | slice = slice(None)) -> float:
+def fastest(K: Any, M: Any, unknowns: np.ndarray | slice = slice(None)) -> float:
     """Return about the square of the highest frequency of some unknowns in rad²/s²; M may have more unknowns than K."""
     inertia, stiffness = M.diagonal()[: K.shape[0]][unknowns], K.diagonal()[unknowns]
     heavy = inertia > 0
     return float(np.max(np.abs(stiffness[heavy]) / inertia[heavy], initial=0.0))
 
 
-def condensed(full: csc_array, model: Model) -> tuple[csc_array, csc_array]:
-    """Return the stiffness over all coordinates, with forces by laws eliminated, and the constraints on them."""
+def condensed(full: Any, model: Model) -> tuple[Any, Any]:
+    """Return the stiffness over all coordinates, with forces by laws eliminated, and the constraints on them: arrays of
+    an array, else sparse.
+    """
     n = model.n_band + model.n_border_dof
     own = [n + k for coupling in model.couplings for k in coupling.free_coordinates]
     forces = [n + k for coupling in model.couplings if not coupling.follows_law for k in coupling.force_unknowns]
     kept = np.concatenate([np.arange(n), np.array(own, dtype=int)])
-    full = full.tocsr()
+    is_sparse = not isinstance(full, np.ndarray)
+    full = full.tocsr() if is_sparse else full
     K = without_forces(full, kept, model)
     of_contacts = {n + k for contact in model.hard_contacts for k in contact.force_unknowns}
-    return K.tocsc(), _independent(full[np.array(forces, dtype=int)][:, kept],
-                                   [row for row, k in enumerate(forces) if k in of_contacts]).tocsc()
+    C = _independent(full[np.array(forces, dtype=int)][:, kept],
+                     [row for row, k in enumerate(forces) if k in of_contacts])
+    return (K.tocsc(), C.tocsc()) if is_sparse else (K, C)
 
 
 def with_entries(rows: Any) -> Any:
@@ -42,11 +44,11 @@ def with_entries(rows: Any) -> Any:
     return rows[np.flatnonzero(abs(rows).sum(axis=1))]
 
 
-def _independent(rows: csr_array, of_contacts: list[int]) -> csr_array:
+def _independent(rows: Any, of_contacts: list[int]) -> Any:
     """Return the constraints without empty ones, such as of a slide between two supported nodes, and without those of
     contacts that others imply.
     """
-    sizes = abs(rows).max(axis=1).toarray().ravel() if rows.shape[0] else np.zeros(0)
+    sizes = row_maxima(rows)
     if not sizes.all():
         place = {row: k for k, row in enumerate(np.flatnonzero(sizes).tolist())}
         rows, of_contacts = rows[np.flatnonzero(sizes)], [place[row] for row in of_contacts if row in place]
@@ -54,7 +56,7 @@ def _independent(rows: csr_array, of_contacts: list[int]) -> csr_array:
         return rows
     from scipy.linalg import qr  # slow to import, and runs do without
 
-    own = rows[of_contacts].toarray()
+    own = dense(rows[of_contacts])
     _, factor, order = qr(own.T, mode="economic", pivoting=True)
     sizes = np.abs(np.diagonal(factor))
     rank = int(np.count_nonzero(sizes > DEPENDENCE_TOLERANCE * max(sizes.max(initial=0.0), np.finfo(float).tiny)))

@@ -10,12 +10,12 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.linalg import cholesky_banded, eigvalsh, ldl, null_space, qr
+from scipy.linalg import cholesky_banded, eigvalsh, ldl, qr
 from scipy.sparse import block_array, csc_array, csr_array, diags_array, eye_array, triu
 from scipy.sparse.linalg import splu
 
-MAX_DENSE_UNKNOWNS = 200
-"""Unknowns up to which the eigenvalues themselves are computed, by LAPACK."""
+from .matrices import MAX_DENSE_UNKNOWNS, all_finite, between, dense, row_maxima
+
 ZERO_EIGENVALUE = 1e-13
 """Eigenvalues of the scaled stiffness, whose diagonal is one, below which they cannot be distinguished from zero."""
 MIN_STIFFNESS_RATIO = 1e-6
@@ -53,7 +53,8 @@ class Inertia(NamedTuple):
 
 
 def inertia(K: Any, C: Any = None, units: np.ndarray | None = None, zero: float = ZERO_EIGENVALUE) -> Inertia:
-    """Return the inertia of K (n, n), symmetric, on the null space of C (m, n); both sparse or dense.
+    """Return the inertia of K (n, n), symmetric, on the null space of C (m, n); both sparse or dense. For few unknowns
+    the eigenvalues themselves are computed.
 
     Rows of C may depend on each other. ``inertia(K - shift * M, C)`` counts the eigenvalues of (K, M) below a shift.
     units (n,): displacement of a point by a unit of each unknown, which makes all entries of K comparable (N/m); None:
@@ -62,32 +63,43 @@ def inertia(K: Any, C: Any = None, units: np.ndarray | None = None, zero: float 
     Raises ValueError where K is not finite or not symmetric to 1e-8 of its largest entry; ArithmeticError, see
     `negatives`.
     """
-    K = csc_array(K, dtype=float)
     n = K.shape[0]
+    is_small = n <= MAX_DENSE_UNKNOWNS
+    K = dense(K) if is_small else csc_array(K, dtype=float)
+    C = np.zeros((0, n)) if C is None else dense(C) if is_small else csr_array(C, dtype=float)
     _check(K)
     if not n:
         return Inertia(0, 0, 0)
-    if _is_definite(K, np.ones(n) if units is None else np.asarray(units, dtype=float), zero):
-        return Inertia(0, 0, n - (0 if C is None else _independent(csr_array(C, dtype=float)).shape[0]))
+    if (_is_definite if is_small else _is_definite_band)(K, _positive(units, n), zero):
+        return Inertia(0, 0, n - _independent(C).shape[0])
     K, C, _ = scaled((K + K.T) / 2, C, units)
-    if n <= MAX_DENSE_UNKNOWNS:
-        return _by_eigenvalues(K.toarray(), C.toarray(), zero)
+    if is_small:
+        return _by_eigenvalues(K, C, zero)
     shift = zero * eye_array(n, format="csc")
     below = negatives(K + shift, C)
     at = negatives(K - shift, C) - below
     return Inertia(below, at, n - C.shape[0] - below - at)
 
 
-def _is_definite(K: csc_array, units: np.ndarray, zero: float) -> bool:
+def _is_definite(K: np.ndarray, units: np.ndarray, zero: float) -> bool:
     """Return whether a factorisation shows that all eigenvalues of K, scaled as by `scaled`, exceed ``zero``; they do
-    so on the null space of any constraints, too. False also where the band is too wide for a quick factorisation.
+    so on the null space of any constraints, too.
     """
+    scale = _scale(K, units)
+    try:
+        np.linalg.cholesky(between(scale, (K + K.T) / 2, scale) - zero * np.eye(len(K)))
+    except np.linalg.LinAlgError:
+        return False
+    return True
+
+
+def _is_definite_band(K: csc_array, units: np.ndarray, zero: float) -> bool:
+    """Return the same of a sparse matrix; False also where the band is too wide for a quick factorisation."""
     n = K.shape[0]
     column = np.repeat(np.arange(n), np.diff(K.indptr))
     row, width = K.indices, int(np.abs(K.indices - column).max(initial=0))
     if not n or width > MAX_BANDWIDTH or not np.diff(K.indptr).all():
         return False
-    units = np.where(units > 0, units, 1.0)
     stiffness = np.maximum.reduceat(np.abs(K.data) / units[row], K.indptr[:-1]) / units
     scale = 1.0 / (units * np.sqrt(np.maximum(stiffness, MIN_STIFFNESS_RATIO * stiffness.max())))
     above, values = np.abs(row - column), K.data * scale[row] * scale[column]
@@ -100,47 +112,53 @@ def _is_definite(K: csc_array, units: np.ndarray, zero: float) -> bool:
     return True
 
 
-def scaled(K: csc_array, C: Any = None, units: np.ndarray | None = None) -> tuple[csc_array, csr_array, np.ndarray]:
-    """Return D K D with a diagonal of about one, independent rows of C D of unit length, and D's diagonal (n,)."""
-    n = K.shape[0]
-    C = csr_array((0, n)) if C is None else csr_array(C, dtype=float)
-    scale = _scale(K, np.ones(n) if units is None else np.asarray(units, dtype=float))
-    D = diags_array(scale)
-    return (D @ K @ D).tocsc(), _independent((C @ D).tocsr()), scale
+def scaled(K: Any, C: Any, units: np.ndarray | None = None) -> tuple[Any, Any, np.ndarray]:
+    """Return D K D with a diagonal of about one, independent rows of C D of unit length, and D's diagonal (n,); K and C
+    are both arrays or both sparse.
+    """
+    scale = _scale(K, _positive(units, K.shape[0]))
+    whole = between(scale, K, scale)
+    return whole if isinstance(K, np.ndarray) else whole.tocsc(), _independent(C, scale), scale
 
 
-def _check(K: csc_array) -> None:
-    largest = abs(K).max() if K.nnz else 0.0
-    if not np.isfinite(largest):
+def _positive(units: np.ndarray | None, n: int) -> np.ndarray:
+    """Return (n,): displacements of a point by a unit of each unknown, one where they are not known."""
+    given = np.ones(n) if units is None else np.asarray(units, dtype=float)
+    return np.where(given > 0, given, 1.0)
+
+
+def _check(K: Any) -> None:
+    if not all_finite(K):
         raise ValueError("the stiffness is not finite")
-    if K.nnz and abs(K - K.T).max() > 1e-8 * largest:
+    if row_maxima(K - K.T).max(initial=0.0) > 1e-8 * row_maxima(K).max(initial=0.0):
         raise ValueError("the stiffness is not symmetric")
 
 
-def _scale(K: csc_array, units: np.ndarray) -> np.ndarray:
+def _scale(K: Any, units: np.ndarray) -> np.ndarray:
     """Return (n,): factors of the unknowns with which no row of K has an entry much above one."""
-    units = np.where(units > 0, units, 1.0)
-    per_unit = diags_array(1.0 / units)
-    stiffness = abs(per_unit @ K @ per_unit).max(axis=1).toarray().ravel()
+    stiffness = row_maxima(between(1.0 / units, K, 1.0 / units))
     largest = stiffness.max(initial=0.0) or 1.0
     return np.asarray(1.0 / (units * np.sqrt(np.maximum(stiffness, MIN_STIFFNESS_RATIO * largest))))
 
 
-def _independent(C: csr_array) -> csr_array:
-    """Return rows of unit length with the span of C."""
-    length = np.sqrt(np.asarray(C.multiply(C).sum(axis=1)).ravel())
-    C = (diags_array(1.0 / np.where(length > 0, length, 1.0)) @ C).tocsr()[length > 0]
+def _independent(C: Any, scale: np.ndarray | None = None) -> Any:
+    """Return rows of unit length with the span of C, its columns times a scale."""
     if not C.shape[0]:
         return C
-    occurring = np.unique(C.indices)
-    r, order = qr(C[:, occurring].toarray().T, mode="r", pivoting=True)
+    C = C if scale is None else between(np.ones(C.shape[0]), C, scale)
+    length = np.sqrt(np.asarray((C * C).sum(axis=1)).ravel())
+    C = between(1.0 / np.where(length > 0, length, 1.0), C, np.ones(C.shape[1]))[length > 0]
+    if not C.shape[0]:
+        return C
+    occurring = np.flatnonzero(abs(C).sum(axis=0))
+    r, order = qr(dense(C[:, occurring]).T, mode="r", pivoting=True)
     diagonal = np.abs(np.diag(r))
     return C[np.sort(order[: np.count_nonzero(diagonal > DEPENDENCE_TOLERANCE)])]
 
 
 def _by_eigenvalues(K: np.ndarray, C: np.ndarray, zero: float) -> Inertia:
     if C.shape[0]:
-        free = null_space(C, rcond=DEPENDENCE_TOLERANCE)
+        free = qr(C.T)[0][:, C.shape[0]:]  # rows of C are independent
         K = free.T @ K @ free
     values = eigvalsh(K) if K.shape[0] else np.zeros(0)
     below, above = int(np.count_nonzero(values < -zero)), int(np.count_nonzero(values > zero))

@@ -117,8 +117,9 @@ def _bordered(problem: StaticProblem, heading: np.ndarray) -> Callable[[np.ndarr
     which is regular at limit points. Raises RuntimeError where it is singular.
     """
     row = heading * np.append(problem.weight / problem.size, 1.0)
-    return solver(block_array([[problem.regular_tangent(), -problem.load_vector()[:, None]],
-                               [row[None, :-1], row[None, -1:]]], format="csc"))
+    tangent, load = problem.regular_tangent(), -problem.load_vector()[:, None]
+    blocks = [[tangent, load], [row[None, :-1], row[None, -1:]]]
+    return solver(np.block(blocks) if isinstance(tangent, np.ndarray) else block_array(blocks, format="csc"))
 
 
 def _advance(problem: StaticProblem, point: Point, advance: float) -> Point | None:

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.linalg import eigh, null_space
-from scipy.sparse import csc_array, csr_array
 from scipy.sparse.linalg import ArpackNoConvergence, eigsh
 
 from ..linear.inertia import ZERO_EIGENVALUE, inertia, scaled
+from ..linear.matrices import all_finite, dense
 from .static_problem import StaticProblem
 
 ASYMMETRY_ROUNDING = 1e-9
 """Asymmetry of the stiffness due to rounding, relative; follower loads cause more."""
 MAX_UNSYMMETRIC_UNKNOWNS = 1500
 """Unknowns up to which all eigenvalues of an unsymmetric stiffness are computed."""
-MAX_DENSE_UNKNOWNS = 600
+MAX_LAPACK_UNKNOWNS = 600
 """Unknowns up to which LAPACK finds the lowest direction."""
 PUSH_SIZE = 1e-3
 """Size of the push off an unstable branch, as a fraction of the scene's size."""
@@ -60,7 +61,7 @@ def stability(problem: StaticProblem) -> Stability:
     return count(K, C, units)
 
 
-def count(K: csc_array, C: csr_array, units: np.ndarray) -> Stability:
+def count(K: Any, C: Any, units: np.ndarray) -> Stability:
     """Return the stability for a stiffness K on constraints C; units: displacement in m by a unit of each coordinate.
     """
     try:
@@ -69,14 +70,14 @@ def count(K: csc_array, C: csr_array, units: np.ndarray) -> Stability:
         return Stability(0, 0, known=False)
 
 
-def _counted(K: csc_array, C: csr_array, units: np.ndarray) -> Stability:
-    if not np.isfinite(K.data).all():
+def _counted(K: Any, C: Any, units: np.ndarray) -> Stability:
+    if not all_finite(K):
         raise ArithmeticError("the stiffness is not finite")
     if abs(K - K.T).max() <= ASYMMETRY_ROUNDING * (abs(K).max() or 1.0):
         found = inertia(K, C, units)
         return Stability(found.negative, found.zero)
-    if K.shape[0] > MAX_UNSYMMETRIC_UNKNOWNS:
-        found = inertia((K + K.T) / 2, C, units)
+    found = inertia((K + K.T) / 2, C, units)  # real eigenvalues are not below those of the symmetric part
+    if K.shape[0] > MAX_UNSYMMETRIC_UNKNOWNS or not (found.negative or found.zero):
         return Stability(found.negative, found.zero, follower=True, bound=found.negative > 0)
     K, C, _ = scaled(K, C, units)
     free = _free(C, K.shape[0])
@@ -93,7 +94,7 @@ def lowest_direction(problem: StaticProblem) -> np.ndarray:
     K, C, units = problem.stiffness()
     n = K.shape[0]
     K, C, scale = scaled((K + K.T) / 2, C, units)
-    if n <= MAX_DENSE_UNKNOWNS:
+    if n <= MAX_LAPACK_UNKNOWNS:
         free = _free(C, n)
         found = free @ eigh(free.T @ (K @ free), subset_by_index=(0, 0))[1][:, 0]
     else:
@@ -115,5 +116,5 @@ def push_off(problem: StaticProblem) -> None:
     problem.move(PUSH_SIZE * problem.size * lowest_direction(problem))
 
 
-def _free(C: csr_array, n: int) -> np.ndarray:
-    return null_space(C.toarray()) if C.shape[0] else np.eye(n)
+def _free(C: Any, n: int) -> np.ndarray:
+    return null_space(dense(C)) if C.shape[0] else np.eye(n)

@@ -27,6 +27,8 @@ MAX_DISTANCE = 10.0
 """Distance, as a multiple of the scene's size, beyond which a scene does not come to rest."""
 MIN_MASS_RATIO = 1e-12
 """Mass of the pseudo-dynamics over that of the fastest vibration, below which steps are those of Newton."""
+MAX_MASS = 1e30
+"""Factor of the mass above which no step descends."""
 MIN_AXIAL_STIFFNESS_RATIO = 12.0
 """Lower bound of EA l²/EI of the shortest element: an element softer along its axis than in bending folds up."""
 STIFFENING_FACTOR = 100.0
@@ -117,12 +119,12 @@ def relax(problem: StaticProblem, longest: float = np.inf, most: int = MAX_RELAX
     mass, near, kept, begin = 1e-3 * problem.fastest, 1e-5, problem.keep(), problem.keep()
     least, descends = MIN_MASS_RATIO * problem.fastest, problem.settings.seek_stable
     for _ in range(most):
+        if not mass < MAX_MASS:
+            return None
         problem.iterations += 1
         change, size, heavier = _correction(problem, mass, descends, longest)
         if change is None:
             mass *= heavier
-            if not mass < 1e30:
-                return None
             continue
         problem.move(change)
         if not np.isfinite(np.linalg.norm(problem.residual())):

@@ -7,6 +7,7 @@ also for follower loads: p multiplies the components of a load alone.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 from scipy.sparse import csc_array
@@ -19,6 +20,7 @@ from ...model.states import attachment_points
 from ...parts.scene_data import SceneData
 from ...parts.settings import IMPENDING, EquilibriumSettings
 from ..linear.condensation import condensed, fastest
+from ..linear.matrices import MAX_DENSE_UNKNOWNS
 from ..linear.solver import solver
 from .ropes_at_rest import off_sheaves, with_ropes_at_rest
 from .starts import with_moved_supports
@@ -109,15 +111,19 @@ class StaticProblem(StaticState):
         self.as_drawn = self.begin = self.keep()["q"]  # begin: the same, or the state without loads
         drawn = self.residual()
         self.size = self._extent()
-        self.mass = self.engine.matrix(1.0, 0.0, 0.0)
+        engine = self.engine
+        self._matrix: Callable[[float, float, float], Any] = (
+            engine.dense_matrix if engine.unknowns <= MAX_DENSE_UNKNOWNS else engine.matrix)
+        self.mass = self._matrix(1.0, 0.0, 0.0)
         # rad²/s²; free motions (a rider that may turn about its rope) have no stiffness. Of points, not of directors:
         # the section of a thin beam vibrates so fast that its fraction of mass would stop the beam
         points = np.flatnonzero(self.weight == 1.0)
-        stiffness, _ = condensed(self.engine.matrix(0.0, 0.0, 1.0), self.model)
+        stiffness, _ = condensed(self.tangent_matrix(), self.model)
         self.fastest = max(fastest(stiffness, self.mass, points), self._falls(drawn, points))
         self.coordinates = coordinates_of(self.model)
         self.point_entries = _point_entries(self.model)
         self.slack: dict[str, float] = {}  # slack fractions of cables as strings
+        self.last_strings: dict[bytes, Any] = {}  # of groups of cables: the last forces on strings, and their rest
         self.held = False  # whether short steps have held cables on surfaces
         self.pushed = False  # whether a push off an unstable branch had no preferred direction
         self.left_route = ""  # where a rope left its route in the states that the search tried, in words
@@ -137,11 +143,15 @@ class StaticProblem(StaticState):
                 for force in model.point_forces]
         return max([*lengths, *(float(np.linalg.norm(gap)) for gap in gaps)], default=0.0) or 1.0
 
-    def stiffness(self) -> tuple[csc_array, csc_array, np.ndarray]:
+    def tangent_matrix(self) -> Any:
+        """Return the tangent stiffness as the problem's matrices are: an array for few unknowns, else sparse."""
+        return self._matrix(0.0, 0.0, 1.0)
+
+    def stiffness(self) -> tuple[Any, Any, np.ndarray]:
         """Return K over the coordinates, constraints C on them, and the displacement in m by a unit of each
         (coordinates,).
         """
-        K, C = condensed(self.tangent(), self.model)
+        K, C = condensed(self.tangent_matrix(), self.model)
         return K, C, units_of(self.weight, self.model)
 
     def curvature(self, change: np.ndarray, mass: float) -> float:
@@ -149,7 +159,7 @@ class StaticProblem(StaticState):
         part.
         """
         along = change[self.coordinates]
-        K, _ = condensed(self.tangent(), self.model)
+        K, _ = condensed(self.tangent_matrix(), self.model)
         return float(along @ (K @ along)) + 0.9 * mass * float(change @ (self.mass @ change))
 
     def distance(self, kept: dict[str, np.ndarray]) -> float:
@@ -159,11 +169,11 @@ class StaticProblem(StaticState):
 
     def solver(self, inertia: float = 0.0) -> Callable[[np.ndarray], np.ndarray]:
         """Return the solver of the tangent plus inertia times the mass. Raises RuntimeError where it is singular."""
-        return solver(self.regular_tangent() if inertia == 0.0 else self.tangent() + inertia * self.mass)
+        return solver(self.regular_tangent() if inertia == 0.0 else self.tangent_matrix() + inertia * self.mass)
 
-    def regular_tangent(self) -> csc_array:
+    def regular_tangent(self) -> Any:
         """Return dR/dx, with a mass that regularises free motions."""
-        return self.tangent() + ZERO_STIFFNESS_RATIO * self.fastest * self.mass
+        return self.tangent_matrix() + ZERO_STIFFNESS_RATIO * self.fastest * self.mass
 
     def length(self, change: np.ndarray) -> float:
         """Return the size of a correction in m."""

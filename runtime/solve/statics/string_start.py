@@ -57,7 +57,7 @@ def hang(problem: StaticProblem, every: bool) -> bool:
     for _ in range(SHAPE_ITERATIONS if groups and (uneven or _depend_on_shape(model)) else 1):
         force = _string_loads(problem, q) if groups else q
         for group in groups:
-            line, rest = _at_rest(problem, nodes, group, q, force)
+            line, rest = _known_at_rest(problem, nodes, group, q, force)
             if rest is not None and (rest.taut.all() or (every and rest.shortest > MIN_LENGTH_RATIO)):
                 q, found = line.set_in(q, rest), True
             elif rest is not None:
@@ -65,6 +65,16 @@ def hang(problem: StaticProblem, every: bool) -> bool:
     if found:
         problem.restore(kept | {"q": q})
     return found
+
+
+def _known_at_rest(problem: StaticProblem, nodes: StringNodes, group: np.ndarray, q: np.ndarray,
+                   force: np.ndarray) -> tuple[_Line, Rest | None]:
+    """Return the same as `_at_rest`, which is not repeated for the last configuration and forces of a group."""
+    given, key = (q, force), group.tobytes()
+    last = problem.last_strings.get(key)
+    if last is None or not all(map(np.array_equal, last[0], given)):
+        last = problem.last_strings[key] = given, _at_rest(problem, nodes, group, q, force)
+    return last[1]
 
 
 def _at_rest(problem: StaticProblem, nodes: StringNodes, group: np.ndarray, q: np.ndarray,

@@ -18,7 +18,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
+from scipy.linalg import LinAlgError
+from scipy.linalg.lapack import dpbtrf, dpbtrs
 
 FORCE_TOLERANCE = 1e-8
 """Residual forces, and tensions of links that are not taut, as a fraction of the sum of all loads."""
@@ -73,10 +74,8 @@ class Strings:
         system = _Banded(self)
         stiffness = np.broadcast_to((1 / self.length)[:, None, None], (len(self.links), 1, 1)) * np.eye(self.r.shape[1])
         start = np.where(self.fixed, self.r, 0.0)
-        force = np.zeros_like(start)
         pull = (start[self.links[:, 1]] - start[self.links[:, 0]]) / self.length[:, None]
-        np.add.at(force, self.links[:, 0], pull)
-        np.add.at(force, self.links[:, 1], -pull)
+        force = _Scatter(self.links.T.ravel(), start.shape).sums(pull, -pull)
         return np.asarray(start + system.solve(system.factor(system.of_links(stiffness) + system.held), force))
 
 
@@ -90,6 +89,19 @@ class Rest:
     taut: np.ndarray
     shortest: float
     iterations: int
+
+
+class _Scatter:
+    """Sums of vectors over the nodes at which they act."""
+
+    def __init__(self, nodes: np.ndarray, shape: tuple[int, int]):
+        """nodes: of each vector; shape: of the sums, nodes and components."""
+        self.shape, self.at = shape, np.add.outer(nodes * shape[1], np.arange(shape[1])).ravel()
+
+    def sums(self, *vectors: np.ndarray) -> np.ndarray:
+        """Return (n, dim): sums of vectors (..., dim), in the order of the nodes given."""
+        parts = [each.reshape(-1) for each in vectors]
+        return np.bincount(self.at, np.concatenate(parts), self.shape[0] * self.shape[1]).reshape(self.shape)
 
 
 class _Banded:
@@ -155,14 +167,15 @@ class _Banded:
 
     def factor(self, matrix: np.ndarray) -> np.ndarray:
         """Return the factor of a matrix. Raises LinAlgError where that is not positive definite."""
-        bands = matrix.reshape(self.above + 1, self.n)
-        return np.asarray(cholesky_banded(bands, overwrite_ab=True, check_finite=False))
+        found, minor = dpbtrf(matrix.reshape(self.above + 1, self.n), overwrite_ab=True)
+        if minor:
+            raise LinAlgError(f"the minor of order {minor} is not positive")
+        return np.asarray(found)
 
     def solve(self, factor: np.ndarray, force: np.ndarray) -> np.ndarray:
         """Return (n, dim): displacements under forces (n, dim), by the factor of a matrix."""
         right = np.where(self.free, force.ravel(), 0.0)
-        x: np.ndarray = cho_solve_banded((factor, False), right, overwrite_b=True, check_finite=False)
-        return x.reshape(force.shape)
+        return np.asarray(dpbtrs(factor, right, overwrite_b=True)[0]).reshape(force.shape)
 
 
 @dataclass
@@ -188,6 +201,13 @@ class _Search:
         self.scale = float(np.abs(strings.load).sum())
         self.constant = self.system.of_bends() + self.system.held
         self.unit = float(strings.length.mean())
+        self._first, self._second = np.ascontiguousarray(strings.links.T)
+        multiplied = np.concatenate([strings.links.T.ravel(), strings.resting])
+        self._of_multipliers = _Scatter(multiplied, strings.r.shape)
+        self._of_all = _Scatter(np.concatenate([multiplied, strings.bends.ravel()]), strings.r.shape)
+        self._natural = strings.natural[:, None]
+        self._bending = (strings.bending[:, None] * strings.factors)[:, :, None]
+        self._isotropic = np.eye(strings.r.shape[1]) / (strings.length**2)[:, None, None]
         self.gives = 1 / (strings.length * strings.axial)
         self.yields = strings.compliances / self.unit**2
         self.r = strings.stretched_evenly()
@@ -202,46 +222,43 @@ class _Search:
 
     def _look(self) -> None:
         strings = self.strings
-        self.d = self.r[strings.links[:, 1]] - self.r[strings.links[:, 0]]
+        self.d = self.r[self._second] - self.r[self._first]
         self.along = self.d / (strings.length**2)[:, None]
         self.slack = (1 - (self.d * self.along).sum(axis=1)) / 2 + self.gives * self.tension
         above = (self.r[strings.resting] * strings.normals).sum(axis=1) - strings.heights
         self.height = above / self.unit + self.yields * self.pressure
+        self.left = self._out_of_balance()
 
-    def out_of_balance(self) -> np.ndarray:
+    def _out_of_balance(self) -> np.ndarray:
         """Return (n, dim): the residual forces in N; zero where a coordinate is fixed."""
         strings = self.strings
-        force = strings.load.copy()
-        curvature = np.einsum("bk,bkd->bd", strings.factors, self.r[strings.bends]) - strings.natural
-        np.add.at(force, strings.bends, -(strings.bending[:, None] * curvature)[:, None] * strings.factors[:, :, None])
-        self._add(force, self.tension, -self.pressure)
+        curvature = (strings.factors[:, :, None] * self.r[strings.bends]).sum(axis=1, keepdims=True) - self._natural
+        force = self._of_all.sums(*self._pulls(self.tension, -self.pressure), -self._bending * curvature)
+        force += strings.load
         force[strings.fixed] = 0.0
         return force
 
-    def _add(self, force: np.ndarray, tension: np.ndarray, pressure: np.ndarray) -> None:
-        """Add the forces of multipliers: links pull, planes push with negative ones."""
-        strings, pull = self.strings, tension[:, None] * self.along
-        np.add.at(force, strings.links[:, 0], pull)
-        np.add.at(force, strings.links[:, 1], -pull)
-        np.add.at(force, strings.resting, -pressure[:, None] * strings.normals / self.unit)
+    def _pulls(self, tension: np.ndarray, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the forces of multipliers: links pull at both nodes, planes push with negative ones."""
+        pull = tension[:, None] * self.along
+        return pull, -pull, (pressure / -self.unit)[:, None] * self.strings.normals
 
     def step(self) -> None:
         """Take a step of Mehrotra's method: the predicted step determines the distance from the constraints."""
         strings, system = self.strings, self.system
         of_links, of_planes = self.slack + self.gives * self.tension, self.height + self.yields * self.pressure
         stiff, hard = self.tension / of_links, self.pressure / of_planes
-        blocks = ((self.tension / strings.length**2)[:, None, None] * np.eye(strings.r.shape[1])
+        blocks = (self.tension[:, None, None] * self._isotropic
                   + stiff[:, None, None] * self.along[:, :, None] * self.along[:, None])
         matrix = self.constant + system.of_links(blocks)
         if len(hard):
             matrix += system.of_planes(hard / self.unit**2)
-        factor, left = system.factor(matrix), self.out_of_balance()
+        factor = system.factor(matrix)
 
         def towards(pull: np.ndarray, push: np.ndarray) -> _Step:
-            force = left.copy()
-            self._add(force, pull / of_links, -push / of_planes)
+            force = self.left + self._of_multipliers.sums(*self._pulls(pull / of_links, -push / of_planes))
             x = system.solve(factor, force)
-            apart = x[strings.links[:, 1]] - x[strings.links[:, 0]]
+            apart = x[self._second] - x[self._first]
             closing = -(self.along * apart).sum(axis=1)
             rise = (x[strings.resting] * strings.normals).sum(axis=1) / self.unit
             more, harder = pull / of_links - stiff * closing, push / of_planes - hard * rise
@@ -282,7 +299,7 @@ class _Search:
     def is_at_rest(self) -> bool:
         """Return whether forces balance, and slack links have no tension."""
         loose = (self.tension * self.slack / self.strings.length).max(initial=0.0)
-        return bool(max(np.abs(self.out_of_balance()).max(), loose) < FORCE_TOLERANCE * self.scale)
+        return bool(max(np.abs(self.left).max(), loose) < FORCE_TOLERANCE * self.scale)
 
 
 def rest_of(strings: Strings) -> Rest | None:
