@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from itertools import chain, pairwise, permutations, product
 
 import numpy as np
 
 from .attachments import AttachmentModel
 from .coupling import CouplingModel
+from .cutting import has_many
 from .elimination import MAX_DENSE_BORDER, BorderGraph, Elimination, dense_beside
 from .model import Model, SlideModel
 
@@ -20,7 +22,9 @@ def elimination(model: Model, system: str) -> Elimination:
     """Return the elimination of the border of a system; a small border is dense."""
     m = model.n_border_dof + (model.n_extra if system == NEWTON else model.n_multipliers)
     if m > MAX_DENSE_BORDER:
-        return _Border(model, system).graph.eliminate()
+        found = _Border(model, system).graph.eliminate()
+        # a slide may come to all substructures of its cable, but is in one of them at a time
+        return replace(found, banded_front=found.largest_last) if has_many(len(model.slides)) else found
     return dense_beside(m, len(model.chains) - 1)
 
 

@@ -20,17 +20,24 @@ SUBSTRUCTURE_ATTACHMENTS = 4
 """Attachments of a substructure: a step of a catenary takes as long with 3 to 5 of them, and longer with 8."""
 
 
+def has_many(attachments: int) -> bool:
+    """Return whether chains with this number of attachments may be divided."""
+    return attachments > MAX_ATTACHMENTS
+
+
 def attached(scene: SceneData) -> np.ndarray:
-    """Return the elements of all cables, in their order, at the ends of springs and joints, once for each end; none
-    where these are too few.
+    """Return the elements of all cables, in their order, at the ends of springs and joints, once for each end, and at
+    slides as drawn; none where these are too few.
     """
     cables = scene.cables
-    if 2 * (len(scene.point_forces) + len(scene.joints)) <= MAX_ATTACHMENTS:
+    if not has_many(2 * (len(scene.point_forces) + len(scene.joints)) + len(scene.slides)):
         return np.zeros(0, dtype=int)
     before = dict(zip(cables, np.cumsum([0, *(cable.elements for cable in cables.values())]).tolist(), strict=False))
     parts: list[PointForce | Joint] = [*scene.point_forces.values(), *scene.joints.values()]
-    return np.array([before[end.on] + int(cables[end.on].mesh.element_at(end.arc_length))
-                     for part in parts for end in (part.a, part.b) if end.on in cables], dtype=int)
+    ends = [end for part in parts for end in (part.a, part.b)]
+    places = [(end.on, end.arc_length) for end in ends if end.on in cables]
+    places += [(slide.along, slide.arc_length) for slide in scene.slides.values() if slide.along in cables]
+    return np.array([before[on] + int(cables[on].mesh.element_at(s)) for on, s in places], dtype=int)
 
 
 def cut(numbering: Numbering, incidence: Incidence, at: np.ndarray) -> Numbering:

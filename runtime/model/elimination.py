@@ -27,7 +27,10 @@ SOLVES_PER_FACTORISATION = 5
 
 @dataclass
 class Elimination:
-    """Fronts as in engine/linear/fronts.h; strips (n, 2): an unknown and a chain coupled to it, increasing."""
+    """Fronts as in engine/linear/fronts.h; strips (n, 2): an unknown and a chain coupled to it, increasing.
+
+    banded_front: a front without neighbours that may be a band in an order found by the engine, -1 for none.
+    """
 
     m: int
     start: np.ndarray
@@ -42,6 +45,7 @@ class Elimination:
     front: np.ndarray
     place: np.ndarray
     strips: np.ndarray
+    banded_front: int = -1
     _layouts: dict[tuple[bytes, int], SystemLayout] = field(default_factory=dict)
 
     def layout(self, chains: np.ndarray, beyond: int) -> SystemLayout:
@@ -66,6 +70,12 @@ class Elimination:
     def size(self) -> int:
         """Return the number of entries of the matrix."""
         return int((self.pivots * (self.pivots + 2 * self.neighbours)).sum())
+
+    @property
+    def largest_last(self) -> int:
+        """Return the largest front without neighbours, -1 of a single front."""
+        last = np.flatnonzero(self.neighbours == 0)
+        return int(last[np.argmax(self.pivots[last])]) if self.n > 1 else -1
 
     @property
     def operations(self) -> float:

@@ -6,7 +6,7 @@ from difficult_scenes import SCENES as DIFFICULT
 from funicular import Circle, Material, Scene
 from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
-from funicular.model import fewest_operations
+from funicular.model import cutting, fewest_operations, unknowns
 from funicular.model.build import build
 from linear_cost import SCENES, ladder, scene
 from shared_scenes import cable_scene
@@ -100,6 +100,60 @@ def test_long_chains_that_are_not_definite_are_factored_with_pivots(half):
     found, how = engine.solve(right)
     assert how == "pivoted"
     assert np.abs(found - expected).max() < 1e-7 * np.abs(expected).max()
+
+
+def slides(count: int, first: float = 0.0) -> Scene:
+    """Return a rope with slides that move along it, from a share of its length on; the rope has three elements a slide.
+    """
+    length = float(count)
+    scene = cable_scene(length=length, pins=(0.0, length), elements=3 * count, element="cable12",
+                        section=Circle(radius=0.01), strain="green",
+                        material=Material(youngs_modulus=1e8, poisson_ratio=0.3, density=2000))
+    for k in range(count):
+        s = length * (first + (1 - first) * (k + 0.5) / count)
+        scene.rigid_body(f"A{k}", mass=0.3, inertia=(1e-3, 1e-3, 1e-3), position=(s, 0, 0), velocity=(1, 0, 0.1))
+        scene.slide(f"A{k}", along="wire", s=s)
+    return scene
+
+
+@pytest.mark.parametrize(("first", "is_band"), [(0.0, True), (0.97, False)], ids=["apart", "close together"])
+def test_many_slides_are_coupled_to_those_beside_them_alone(first, is_band):
+    engine = started(slides(48, first))
+    error, _ = solution_error(engine, 1e-3, 1e-5)
+    assert error < 1e-10
+    unknowns, lower, upper = engine.banded_front
+    assert (unknowns > 0) == is_band
+    if is_band:
+        assert max(lower, upper) < unknowns / 8
+
+
+def test_the_band_of_many_slides_is_as_wide_for_more_of_them():
+    widths = []
+    for count in (48, 96):
+        engine = started(slides(count))
+        solution_error(engine, 1e-3, 1e-5)
+        widths.append(engine.banded_front[1:])
+    assert widths[0] == widths[1]
+
+
+@pytest.mark.parametrize("integrator", ["genalpha", "energy", "radau"])
+def test_dividing_a_cable_with_many_slides_changes_nothing_but_rounding(integrator, monkeypatch):
+    """Slides pass from one part of the cable to the next."""
+    def motion() -> np.ndarray:
+        run = slides(28).run(duration=0.6, output_step=0.6, step=2e-2, integrator=integrator)
+        return run["wire.nodal_vectors"][-1]
+
+    def chains() -> int:
+        return len(build(slides(28)).chains) - 1
+
+    divided = motion()
+    assert chains() > 5
+    for module in (cutting, unknowns):
+        monkeypatch.setattr(module, "MAX_ATTACHMENTS", 10**9)
+    assert chains() == 1
+    whole = motion()
+    assert not np.array_equal(divided, whole)
+    np.testing.assert_allclose(divided, whole, rtol=0, atol=1e-9)
 
 
 @pytest.mark.parametrize(("name", "shared"), [("three cables", 3), ("ring", 3), ("ladder", 9)])

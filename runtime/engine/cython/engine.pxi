@@ -179,10 +179,15 @@ cdef extern from * nogil:
         int m, n, size
         const int *start, *first, *pivots, *neighbours, *unknown, *in_parent, *parent, *child, *sibling
         const int *front, *place
+    ctypedef struct fu_banded_front:
+        int front, most_entries, most_numbers, n, lower, upper
+        int *first, *rows, *child, *order, *place, *pivot
+        double *band
     ctypedef struct fu_factors:
         double *numbers, *x
         int *unknowns, *map, *start, *first, *size, *pivots, *done
         int most_numbers, most_unknowns
+        fu_banded_front banded
     ctypedef struct fu_system:
         int n, width, m, n_chains, n_strips, n_strip_rows
         const fu_strip *strips

@@ -73,6 +73,12 @@ cdef class Statics(Translation):
         how = " and ".join(name for k, name in enumerate(("symmetric", "unpivoted", "pivoted")) if k in used)
         return np.array([self.run.rhs[i] for i in range(total)]), how
 
+    @property
+    def banded_front(self):
+        """Unknowns of the border's front that was factored as a band, 0 for none, and its diagonals on both sides; for tests."""
+        cdef const fu_banded_front *banded = &self.run.newton.factors.banded
+        return banded.n, banded.lower, banded.upper
+
     def set_state(self, double t=0.0, q=None, s=None, prescribe=True, **given):
         """Set the static state: time, configuration (n_q,), arc-lengths, by default as built; by the name of a kind the
         internal forces of its couplings, (n, largest number of one), by default zero.

@@ -280,6 +280,7 @@ cdef class Translation(Arrays):
     cdef _factors(self, fu_factors *factors, elimination):
         """Allocate the factors of a border, unless they replace the matrix."""
         cdef int n = elimination.n, m = elimination.m
+        self._banded_front(&factors.banded, elimination)
         if n == 1:
             return
         sizes = elimination.sizes.astype(float)
@@ -289,6 +290,19 @@ cdef class Translation(Arrays):
         factors.unknowns, factors.map = self._int_zeros(factors.most_unknowns), self._int_zeros(m)
         factors.start, factors.first = self._int_zeros(n), self._int_zeros(n)
         factors.size, factors.pivots, factors.done = self._int_zeros(n), self._int_zeros(n), self._int_zeros(n)
+
+    cdef _banded_front(self, fu_banded_front *banded, elimination):
+        """Allocate the front that may be a band of at most half of its size."""
+        banded.front = elimination.banded_front
+        if banded.front < 0:
+            return
+        cdef int most = elimination.pivots[banded.front]
+        banded.most_entries = self._counted(most * most // 2 + most)
+        banded.most_numbers = banded.most_entries
+        banded.first, banded.rows = self._int_zeros(most + 1), self._int_zeros(banded.most_entries)
+        banded.child, banded.order = self._int_zeros(most), self._int_zeros(most)
+        banded.place, banded.pivot = self._int_zeros(most), self._int_zeros(most)
+        banded.band = self._zeros(banded.most_numbers)
 
     cdef _strips(self, fu_system *system, layout, int *numbers):
         """Fill in the coupling of the border with chains, and allocate its memory; numbers: of the layout."""

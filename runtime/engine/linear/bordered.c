@@ -25,7 +25,15 @@ void fu_system_clear_border(fu_system *s)
                 *of[side] = (fu_span){s->n, 0};
             }
         }
-    for (int i = 0; i <= s->fronts->size; ++i) s->D[i] = 0.0;
+    int size = s->fronts->size;
+    s->D[size] = 0.0;
+    const int last = s->factors.banded.front;
+    if (last >= 0 && fu_clear_entries(&s->factors.banded, s->fronts->pivots[last], s->D + s->fronts->start[last])) {
+        const int n = s->fronts->pivots[last], end = s->fronts->start[last] + n * n;
+        for (int i = end; i < size; ++i) s->D[i] = 0.0;
+        size = s->fronts->start[last];
+    }
+    for (int i = 0; i < size; ++i) s->D[i] = 0.0;
 }
 
 fu_span fu_common(fu_span one, fu_span other)
@@ -115,7 +123,11 @@ static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, 
 /* Returns the strip of an unknown of the border in a chain, -1 if there is none. */
 int fu_strip_of(const fu_system *s, int k, int chain)
 {
-    for (int i = s->first_strip[k]; i < s->first_strip[k + 1]; ++i)
+    const int first = s->first_strip[k], end = s->first_strip[k + 1];
+    const int likely =
+        first + chain - (first < end ? s->strips[first].chain : 0); /* of chains that follow each other */
+    if (likely >= first && likely < end && s->strips[likely].chain == chain) return likely;
+    for (int i = first; i < end; ++i)
         if (s->strips[i].chain == chain) return i;
     return -1;
 }

@@ -14,6 +14,14 @@
 #define FORWARD(F, n, done, x) eliminated(F, n, 0, done, x)
 #define BACK substituted
 #define FACTOR zgetrf
+#define FACTOR_BAND zgbtrf
+#define SUBTRACT subtract
+
+/* Subtracts from n numbers a column times a factor. */
+static void subtract(int n, const fu_complex *column, fu_complex factor, fu_complex *to)
+{
+    for (int i = 0; i < n; ++i) fu_complex_subtract_product(&to[i], column[i], factor);
+}
 
 /* Eliminates the pivots `from` to `to` from a column of n. */
 static void eliminated(const fu_complex *F, int n, int from, int to, fu_complex *column)

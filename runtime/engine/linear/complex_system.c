@@ -40,6 +40,13 @@ void fu_complex_system_take(fu_complex_system *c, const fu_system *s, double *sc
     const long fronts = s->fronts->n, lengths[] = {real->most_unknowns, m, fronts, fronts, fronts, fronts, fronts};
     for (int k = 0; k < (int)(sizeof integers / sizeof *integers); ++k)
         *integers[k] = (int *)fu_take(scratch, taken, FU_DOUBLES(lengths[k], int));
+    fu_banded_front *banded = &c->factors.banded;
+    int **of_band[] = {&banded->first, &banded->rows, &banded->child, &banded->order, &banded->place, &banded->pivot};
+    const long most = banded->front < 0 ? 0 : s->fronts->pivots[banded->front];
+    const long sizes[] = {most + 1, banded->most_entries, most, most, most, most};
+    for (int k = 0; k < (int)(sizeof of_band / sizeof *of_band); ++k)
+        *of_band[k] = (int *)fu_take(scratch, taken, FU_DOUBLES(sizes[k], int));
+    banded->band = (double *)take(scratch, taken, banded->most_numbers);
     c->is_lower = 1;
     for (int part = 0; part < 2; ++part) {
         c->L[part] = fu_take(scratch, taken, FU_COMPLEX_STRIDE((long)s->width) * n);

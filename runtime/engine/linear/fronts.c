@@ -14,6 +14,8 @@
 #define FORWARD forward
 #define BACK backward
 #define FACTOR dgetrf
+#define FACTOR_BAND dgbtrf
+#define SUBTRACT subtract_one
 
 /* Subtracts from n numbers the sum of four columns times a factor each. */
 FU_INLINE void subtract_four(int n, const double *const column[4], const double factor[4], double *restrict to)

@@ -1,4 +1,4 @@
-/* Elimination of a border by fronts: linear/fronts.c, linear/complex_fronts.c. */
+/* Elimination of a border by fronts: linear/fronts.c, linear/complex_fronts.c, linear/banded_front.c. */
 #ifndef FUNICULAR_LINEAR_FRONTS_H
 #define FUNICULAR_LINEAR_FRONTS_H
 
@@ -20,6 +20,24 @@ typedef struct {
     const int *front, *place; /* m: of each unknown the front that eliminates it, its place among the pivots there */
 } fu_fronts;
 
+/* A front without neighbours that is factored as a band where most of its entries are zero
+ * (banded_front_template.h). */
+typedef struct {
+    int front;                      /* -1 for none */
+    int most_entries, most_numbers; /* capacity: entries, numbers of the band */
+    int is_listed;                  /* the entries are those of the matrix */
+    int n, lower, upper;            /* unknowns, 0 if it is factored densely; diagonals on both sides */
+    int *first, *rows;              /* of each column its first entry; rows of the entries */
+    int *child;                     /* of each unknown a child of which it is a neighbour, -1 for none */
+    int *order, *place;             /* the unknown at each place in the band, and the reverse */
+    int *pivot;
+    double *band; /* in LAPACK's storage; complex numbers take two doubles */
+} fu_banded_front;
+
+void fu_order_band(const fu_fronts *fronts, fu_banded_front *banded, int k);
+void fu_find_width(const fu_fronts *fronts, fu_banded_front *banded, int k);
+int fu_clear_entries(fu_banded_front *banded, int n, double *matrix);
+
 /* Factors of such a matrix. A front may delay pivots to its parent, so that sizes are known only afterwards. */
 typedef struct {
     double *numbers; /* fronts, column by column, one after the other; complex numbers take two doubles */
@@ -29,6 +47,7 @@ typedef struct {
     int *start, *first, *size, *pivots,
         *done;                       /* n: in `numbers`, in `unknowns`; unknowns, candidates for pivots, and pivots */
     int most_numbers, most_unknowns; /* capacity of the memory */
+    fu_banded_front banded;
 } fu_factors;
 
 #endif

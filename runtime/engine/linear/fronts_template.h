@@ -140,21 +140,40 @@ FU_INLINE int PREFIX(eliminate)(NUMBER *F, int n, int q, int *rows, int *columns
     return k;
 }
 
+#include "linear/banded_front_template.h"
+
+/* Factors a front of n unknowns without neighbours; returns LAPACK's info. */
+FU_INLINE int PREFIX(factor_last)(fu_factors *f, NUMBER *F, int n, int *rows, const fu_lapack *lapack)
+{
+    int info = 0;
+    lapack->FACTOR(&n, &n, F, &n, f->map, &info);
+    for (int i = 0; i < n; ++i)
+        if (f->map[i] - 1 != i) PREFIX(swap_unknowns)(rows, i, f->map[i] - 1);
+    if (info) return info;
+    for (NUMBER *at = F, *end = F + n * n; at < end; at += n + 1) *at = DIVIDE(ONE, *at);
+    return 0;
+}
+
 /* Factors the matrix; returns 0, or 1 + the unknown at which it is singular or exceeds the memory. */
 FU_INLINE int PREFIX(factor)(const fu_fronts *t, const NUMBER *matrix, fu_factors *f, const fu_lapack *lapack)
 {
     for (int k = 0; k < t->n; ++k) {
+        int info = 0;
+        if (k == f->banded.front && PREFIX(factor_banded)(t, matrix + t->start[k], f, k, lapack, &info)) {
+            if (info) return 1 + t->unknown[t->first[k] + info - 1];
+            f->start[k] = k ? f->start[k - 1] + f->size[k - 1] * f->size[k - 1] : 0;
+            f->first[k] = k ? f->first[k - 1] + 2 * f->size[k - 1] : 0;
+            f->size[k] = f->pivots[k] = f->done[k] = 0;
+            continue;
+        }
         if (PREFIX(assemble)(t, matrix, f, k)) return 1 + t->unknown[t->first[k]];
-        int n = f->size[k], q = f->pivots[k], info = 0;
+        const int n = f->size[k], q = f->pivots[k];
         int *rows = f->unknowns + f->first[k], *columns = rows + n;
         if (t->parent[k] >= 0) f->done[k] = PREFIX(eliminate)(PREFIX(front)(f, k), n, q, rows, columns, f->map);
         else {
-            lapack->FACTOR(&n, &n, PREFIX(front)(f, k), &n, f->map, &info);
-            for (int i = 0; i < n; ++i)
-                if (f->map[i] - 1 != i) PREFIX(swap_unknowns)(rows, i, f->map[i] - 1);
+            info = PREFIX(factor_last)(f, PREFIX(front)(f, k), n, rows, lapack);
             f->done[k] = n;
             if (info) return 1 + columns[info - 1];
-            for (NUMBER *F = PREFIX(front)(f, k), *end = F + n * n; F < end; F += n + 1) *F = DIVIDE(ONE, *F);
         }
     }
     return 0;
@@ -164,13 +183,26 @@ FU_INLINE int PREFIX(factor)(const fu_fronts *t, const NUMBER *matrix, fu_factor
 FU_INLINE void PREFIX(solve)(const fu_fronts *t, const fu_factors *f, NUMBER *y)
 {
     NUMBER *x = (NUMBER *)f->x, *local = x + t->m;
+    const int banded = f->banded.n ? f->banded.front : -1;
     for (int k = 0; k < t->n; ++k) {
+        if (k == banded) {
+            const int *unknown = t->unknown + t->first[k];
+            for (int i = 0; i < f->banded.n; ++i) local[i] = y[unknown[i]];
+            PREFIX(solve_banded)(&f->banded, local, x);
+            for (int i = 0; i < f->banded.n; ++i) y[unknown[i]] = local[i];
+            continue;
+        }
         const int n = f->size[k], done = f->done[k], *rows = f->unknowns + f->first[k];
         for (int i = 0; i < n; ++i) local[i] = y[rows[i]];
         FORWARD(PREFIX(front)(f, k), n, done, local);
         for (int i = 0; i < n; ++i) y[rows[i]] = local[i];
     }
     for (int k = t->n - 1; k >= 0; --k) {
+        if (k == banded) {
+            const int *unknown = t->unknown + t->first[k];
+            for (int i = 0; i < f->banded.n; ++i) x[unknown[i]] = y[unknown[i]];
+            continue;
+        }
         const int n = f->size[k], done = f->done[k], *rows = f->unknowns + f->first[k], *columns = rows + n;
         const NUMBER *F = PREFIX(front)(f, k);
         for (int i = 0; i < n; ++i) local[i] = i < done ? y[rows[i]] : x[columns[i]];
