@@ -5,9 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from ..base.rotations import cross, rotate
+from ..parts.joint import Joint
 from ..parts.modal_body import ModalBody
+from ..parts.point_force import PointForce
 from ..parts.rigid_body import RigidBody, largest_moment
 from ..parts.scene_data import SceneData
+from .elimination import MAX_DENSE_BORDER
 from .model import BodyModel, ShapeModel
 
 BODIES = {2: ("planar_rigid", 4, 3), 3: ("rigid", 7, 6)}
@@ -17,14 +20,33 @@ BODIES = {2: ("planar_rigid", 4, 3), 3: ("rigid", 7, 6)}
 def body_models(scene: SceneData, at: int) -> list[BodyModel]:
     """Return the bodies in the scene's order, with coordinates from `at` on."""
     dim, made, dof = scene.dim, [], at
+    is_small = len(scene.bodies) * BODIES[dim][2] <= MAX_DENSE_BORDER
+    held = {*scene.bodies} if is_small else _held_in_rotation(scene)
     kernel, n_configuration, n_velocity = BODIES[dim]
     for body in scene.bodies.values():
         shape = _shape(body, np.array(scene.gravity)[:dim]) if isinstance(body, ModalBody) else None
         centre = np.zeros(3) if isinstance(body, ModalBody) else np.array(body.centre)
-        made.append(BodyModel(body.name, kernel, body.mass, np.array(body.inertia), centre, at, dof, shape))
+        made.append(BodyModel(body.name, kernel, body.mass, np.array(body.inertia), centre, at, dof, shape,
+                              shape is None and body.name not in held))
         at += n_configuration + made[-1].modes
         dof += n_velocity + made[-1].modes
     return made
+
+
+def _held_in_rotation(scene: SceneData) -> set[str]:
+    """Return the names of bodies whose rotations may depend on other parts: on all but joints of points and forces
+    between points, of which those at the mass centre of a rigid body have no moment.
+    """
+    held: set[str] = set()
+    for part in scene.parts():
+        if not isinstance(part, PointForce) and not (isinstance(part, Joint) and part.is_of_points):
+            held.update(part.refers_to())
+            continue
+        for end in (part.a, part.b):
+            body = scene.bodies.get(end.on or "")
+            if body is not None and (isinstance(body, ModalBody) or any(body.arm(end.point))):
+                held.add(body.name)
+    return held
 
 
 def _shape(body: ModalBody, gravity: np.ndarray) -> ShapeModel:

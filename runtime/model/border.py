@@ -48,10 +48,10 @@ class _Border:
         self.bodies = []
         self._ropes()
         ends = [*(body.dof for body in model.bodies), model.n_dof]
-        for first, end in pairwise(ends):
-            unknowns = model.unknown_of_dof[first:end]
-            self.bodies.append(self.graph.group(unknowns - model.n_band))
-            self.group_of_node.update(dict.fromkeys(unknowns.tolist(), self.bodies[-1]))
+        for body, (first, end) in zip(model.bodies, pairwise(ends), strict=True):
+            turns = first + model.dim if body.turns_alone else end
+            self.bodies.append(self._group(model.unknown_of_dof[first:turns]))
+            self._group(model.unknown_of_dof[turns:end])
         self.cables = [self._place(cable.coordinates) for cable in model.cables]
         self.slides: list[int] = []
         for coupling in model.couplings:
@@ -94,11 +94,13 @@ class _Border:
             for drum in rope.drums:
                 self._group(self._unknowns(np.array(drum.turns, dtype=int)))
 
-    def _group(self, unknowns: np.ndarray) -> None:
-        """Add a group of unknowns, if there are any."""
-        if len(unknowns):
-            group = self.graph.group(unknowns - self.model.n_band)
-            self.group_of_node.update(dict.fromkeys(unknowns.tolist(), group))
+    def _group(self, unknowns: np.ndarray) -> int:
+        """Add a group of unknowns and return its number, -1 where there are none."""
+        if not len(unknowns):
+            return -1
+        group = self.graph.group(unknowns - self.model.n_band)
+        self.group_of_node.update(dict.fromkeys(unknowns.tolist(), group))
+        return group
 
     def _unknowns(self, dofs: slice | np.ndarray) -> np.ndarray:
         """Return the unknowns on which these dofs depend."""

@@ -63,9 +63,9 @@ def joint_models(builder: ModelBuilder) -> Iterator[JointModel]:
 def _joint(builder: ModelBuilder, joint: Joint) -> JointModel:
     scene = builder.scene
     at = joint_axes(scene, joint)
-    needs = joint.joint_kind not in ("spherical", "distance")
-    ends = [builder.attachment(attachment, axes if needs else None, None if attachment.on not in scene.cables
-                               or has_section(scene.cables[attachment.on]) else joint.up)
+    ends = [builder.attachment(attachment, None if joint.is_of_points else axes,
+                               None if attachment.on not in scene.cables or has_section(scene.cables[attachment.on])
+                               else joint.up)
             for attachment, axes in zip((joint.a, joint.b), at, strict=True)]
     kind, driven, turned = joint.joint_kind, joint.is_driven, False
     if scene.dim == 2:

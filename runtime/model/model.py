@@ -117,6 +117,7 @@ class BodyModel:
     """One body: kernels of its frame, inertia, position of its coordinates; `shape`: of a modal one.
 
     The engine's frame of a rigid body is at the mass centre, at `centre` in the axes and from the origin of the user.
+    turns_alone: whether no equation couples its rotations with other unknowns.
     """
 
     name: str
@@ -127,6 +128,7 @@ class BodyModel:
     configuration: int
     dof: int
     shape: ShapeModel | None = None
+    turns_alone: bool = False
 
     @property
     def modes(self) -> int:

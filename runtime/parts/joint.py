@@ -112,6 +112,11 @@ class Joint(Part):
         return self
 
     @property
+    def is_of_points(self) -> bool:
+        """Return whether its equations depend on the two points alone, not on rotations."""
+        return self.joint_kind in ("spherical", "distance")
+
+    @property
     def is_driven(self) -> bool:
         """Return whether a signal drives it."""
         return any(signal is not None for signal in (self.angle, self.distance, self.velocity))

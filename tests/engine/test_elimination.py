@@ -8,6 +8,7 @@ from difficult_scenes import SCENES as DIFFICULT
 from funicular import Circle, Harmonic, Material, Ramp, Scene
 from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
+from funicular.model import bodies as body_models
 from funicular.model import border, elimination
 from funicular.model.build import build
 from funicular.model.elimination import BorderGraph, eliminated
@@ -201,6 +202,36 @@ def doors(n: int) -> Scene:
             scene.joint("revolute", (f"door{k - 1}", (0.5, height, 0)) if k else (0, height, 0),
                         (f"door{k}", (-0.5, height, 0)), axis=(0, 1, 0))
     return scene
+
+
+def test_bodies_held_at_their_mass_centres_turn_alone():
+    """Springs, joints of axes and moments on a body, and points beside the mass centre, involve its rotations."""
+    made = net(36)
+    assert all(body.turns_alone for body in build(made).bodies)
+    made.spring("breakpoint0_0", (0, 1, 0), stiffness=1.0)
+    made.spring(("breakpoint1_1", (0, 1e-3, 0)), (0, 1, 0), stiffness=1.0)
+    made.joint("universal", "breakpoint2_2", (0.2, 0, 0.2), axis=(1, 0, 0), second_axis=(0, 1, 0))
+    made.moment("breakpoint3_3", value=(0, 1, 0))
+    held = {body.name for body in build(made).bodies if not body.turns_alone}
+    assert held == {"breakpoint1_1", "breakpoint2_2", "breakpoint3_3"}
+
+
+@pytest.mark.parametrize("integrator", ["genalpha", "energy", "radau"])
+def test_rotations_by_themselves_change_nothing_but_rounding_and_the_number_of_operations(integrator, monkeypatch):
+    made = net(36)
+    for name in made.bodies:
+        made = made.replace(name, angular_velocity=(1.0, 2.0, 3.0))
+
+    def motion() -> np.ndarray:
+        run = made.run(duration=0.05, output_step=0.05, step=5e-3, integrator=integrator)
+        return np.array([run[f"{name}.{what}"][-1, :3] for name in made.bodies for what in ("position", "orientation")])
+
+    apart, operations = motion(), build(made).newton.operations
+    monkeypatch.setattr(body_models, "_held_in_rotation", lambda scene: set(scene.bodies))
+    together = motion()
+    assert build(made).newton.operations > 2 * operations
+    assert not np.array_equal(apart, together)
+    np.testing.assert_allclose(apart, together, rtol=0, atol=1e-11)
 
 
 def test_redundant_equations_are_left_out_as_of_few_bodies():

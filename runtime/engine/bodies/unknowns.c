@@ -164,10 +164,23 @@ void fu_add_element_matrix(const fu_model *model, int first, int n, const double
     }
 }
 
-/* Adds T' values T of a block over contiguous unknowns of the border in one front, rows and columns both. */
+/* Returns whether n unknowns of the border from `first` on are in one front; those of a body that turns alone are not.
+ */
+static int in_one_front(const fu_fronts *fronts, int first, int n)
+{
+    return fronts->n == 1 || fronts->front[first] == fronts->front[first + n - 1];
+}
+
+/* Adds T' values T of a block over contiguous unknowns of the border. */
 static void add_together(fu_system *s, int row, int rows, int column, int columns, double factor,
                          const double *restrict values, int by_row, int by_column)
 {
+    if (!in_one_front(s->fronts, row, rows) || !in_one_front(s->fronts, column, columns)) {
+        for (int j = 0; j < columns; ++j)
+            for (int i = 0; i < rows; ++i)
+                add(s, s->n + row + i, s->n + column + j, factor * values[i * by_row + j * by_column]);
+        return;
+    }
     int stride;
     const int at = fu_fronts_block(s->fronts, row, column, &stride), has_place = at < s->fronts->size;
     double *restrict to = s->D + at;
