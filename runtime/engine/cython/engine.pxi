@@ -234,6 +234,8 @@ cdef extern from * nogil:
     void fu_state_attach(fu_state *state, int k, void *data)
     ctypedef struct fu_rows:
         int rows
+        double *H
+    int FU_ROW_ENTRIES_OF(int multipliers)
     ctypedef struct fu_accelerator:
         fu_system mass
         double *corner, *rhs, *scratch, *force, *work, *prescribed, *multipliers

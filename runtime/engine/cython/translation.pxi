@@ -394,6 +394,10 @@ cdef class Translation(Arrays):
         a.corner = self._zeros(accelerations.size)
         a.rhs = self._zeros(unknowns + model.n_multipliers + FU_BAND_BEYOND(width))
         a.rows = <fu_rows *>self._zeros(self.model.n_rows * sizeof(fu_rows) // sizeof(double) + 1)
+        for k in range(self.model.n_couplings):
+            c = self.couplings[<int>k]
+            if c.row >= 0:
+                a.rows[c.row].H = self._zeros(FU_ROW_ENTRIES_OF(max(c.n_multipliers, 1)))
         a.scratch = self._zeros(self.model.n_scratch)
         a.multipliers = self._zeros(model.n_multipliers)
         a.self_locking = -1

@@ -7,6 +7,8 @@
 #include "linear/linear.h"
 
 #define FU_ROW_ENTRIES (14 * FU_ROW_COORDINATES) /* of the constraints of one coupling, at most */
+#define FU_ROW_ENTRIES_OF(multipliers)                                                                                 \
+    ((multipliers) * FU_ROW_COORDINATES < FU_ROW_ENTRIES ? (multipliers) * FU_ROW_COORDINATES : FU_ROW_ENTRIES)
 
 /* Constraints H q'' = W over the dofs `at`, with their residuals C, and their rate at rest: `rows` of them now, from
  * the multiplier `first` on. There are at most max_multipliers; those of the bits redundant_rows are zero. */
@@ -14,7 +16,8 @@ typedef struct {
     int first, max_multipliers, rows, redundant_rows, n, at[FU_ROW_COORDINATES];
     int slide; /* of an end of a joint, -1; by_s: derivatives by its s */
     double by_s[6];
-    double H[FU_ROW_ENTRIES], W[FU_MAX_FORCES], C[FU_MAX_FORCES], rate[FU_MAX_FORCES], scale[FU_MAX_FORCES];
+    double *H; /* FU_ROW_ENTRIES_OF max_multipliers */
+    double W[FU_MAX_FORCES], C[FU_MAX_FORCES], rate[FU_MAX_FORCES], scale[FU_MAX_FORCES];
     int is_pushed; /* the first row's multiplier acts by `column` in place of its row of H, which includes friction */
     double column[FU_ROW_COORDINATES];
     /* 1/kg: compliance of rows, acceleration for a multiplier of 1 N, so that redundant rows share it */
