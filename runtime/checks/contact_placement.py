@@ -65,8 +65,9 @@ def placed_contacts(scene: SceneData, contacts: list[Contact]) -> list[Contact]:
     made: list[Contact] = []
     starts: list[_Start] = []
     own: dict[tuple[str, str], Contact] = {}
+    known = scene.contact_of_pair
     for contact in contacts:
-        contact = _of_surface(scene, contact, own)
+        contact = _of_surface(scene, contact, known, own)
         made.append(_complete(scene, contact))
         _check_fits(scene, made[-1])
         own[contact.a, contact.b] = contact
@@ -79,8 +80,11 @@ def placed_contacts(scene: SceneData, contacts: list[Contact]) -> list[Contact]:
     return made
 
 
-def _of_surface(scene: SceneData, contact: Contact, own: Mapping[tuple[str, str], Contact]) -> Contact:
-    """Return a contact with the surface second; own: contacts added with it, by pair."""
+def _of_surface(scene: SceneData, contact: Contact, known: Mapping[tuple[str, str], str],
+                own: Mapping[tuple[str, str], Contact]) -> Contact:
+    """Return a contact with the surface second; known: names of the scene's contacts, own: contacts added with it, both
+    by pair.
+    """
     if contact.a in scene.surfaces and contact.b not in scene.surfaces:
         contact = contact.model_copy(update={"a": contact.b, "b": contact.a})
     if contact.b not in scene.surfaces:
@@ -88,7 +92,7 @@ def _of_surface(scene: SceneData, contact: Contact, own: Mapping[tuple[str, str]
                          near(contact.b, scene.surfaces) if scene.surfaces else
                          'add one before: scene.surface("ground", fu.Plane())')
     pair = (contact.a, contact.b)
-    if (other := scene.contact_of_pair.get(pair)) is not None or pair in own:
+    if (other := known.get(pair)) is not None or pair in own:
         where = (own[pair] if other is None else scene.contacts[other]).where
         raise SceneError(contact.where, f'"{contact.a}" and "{contact.b}" have the {where} already',
                          "leave one of them out")
@@ -280,13 +284,13 @@ def _check_penetrations(scene: SceneData, contacts: list[Contact], starts: list[
     found: list[tuple[int, SceneError]] = []
     for name, numbers in of_surface.items():
         surface = scene.surfaces[name]
-        drawn = np.concatenate([starts[k].drawn for k in numbers])
-        distance = surface.distance(scene.bodies.get(surface.on or ""), drawn, normal)
-        first = 0
-        for k in numbers:
-            n = len(starts[k].drawn)
-            error = _too_deep(scene, contacts[k], starts[k], distance[first:first + n])
-            first += n
+        drawn = [starts[k].drawn for k in numbers]
+        first = np.cumsum([0, *map(len, drawn)])
+        distance = surface.distance(scene.bodies.get(surface.on or ""), np.concatenate(drawn), normal)
+        below = np.repeat([contacts[k].radius or 0.0 for k in numbers], np.diff(first)) - distance > 0
+        for at in np.unique(np.searchsorted(first, np.flatnonzero(below), "right") - 1).tolist():
+            k = numbers[at]
+            error = _too_deep(scene, contacts[k], starts[k], distance[first[at] : first[at + 1]])
             if error is not None:
                 found.append((k, error))
                 break

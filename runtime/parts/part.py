@@ -156,6 +156,17 @@ class Part(BaseModel, metaclass=_TranslatingType):
         return {keyword: value for keyword, value in {**self.as_made().entries(), **changes}.items()
                 if value is not None}
 
+    def __copy__(self) -> Self:
+        """Return a copy. It takes a third of the time of pydantic's, which allows for entries beside the fields."""
+        if self.__pydantic_private__ is not None:
+            return super().__copy__()
+        made, put = type(self).__new__(type(self)), object.__setattr__
+        put(made, "__dict__", {**self.__dict__})
+        put(made, "__pydantic_fields_set__", {*self.__pydantic_fields_set__})
+        put(made, "__pydantic_extra__", None)
+        put(made, "__pydantic_private__", None)
+        return made
+
     def completed(self, found: Mapping[str, Any]) -> Self:
         """Return this part with values, by field, that its scene found; they count as not given."""
         made = self.model_copy(update=dict(found))
@@ -171,11 +182,13 @@ class Part(BaseModel, metaclass=_TranslatingType):
 
     def refers_to(self) -> Iterator[str]:
         """Yield the names of the parts that it needs in a scene."""
-        for name, field in type(self).model_fields.items():
+        kind = type(self)
+        naming = _naming_fields(kind)
+        for name in kind.model_fields:
             value = getattr(self, name)
             if isinstance(value, Part):
                 yield from value.refers_to()
-            elif isinstance(value, str) and names_a_part(field):
+            elif isinstance(value, str) and name in naming:
                 yield value
 
     def named_within(self) -> Iterator[Part]:
@@ -230,6 +243,12 @@ ACROSS = {POINT: slice(2, 3), DIRECTION: slice(2, 3), AXIS: slice(2), ORIENTATIO
 def names_a_part(field: FieldInfo) -> bool:
     """Return whether a field holds the name of another part."""
     return any(mark is NAMES_A_PART for mark in _marks(field))
+
+
+@cache
+def _naming_fields(kind: type[Part]) -> frozenset[str]:
+    """Return the fields of a kind of part that hold names of other parts."""
+    return frozenset(name for name, field in kind.model_fields.items() if names_a_part(field))
 
 
 @cache
