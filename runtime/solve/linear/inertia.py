@@ -23,6 +23,8 @@ MIN_STIFFNESS_RATIO = 1e-6
 direction would be scaled up to a stiffness."""
 DEPENDENCE_TOLERANCE = 1e-10
 """Independent part of a constraint of unit length below which it follows from others."""
+MAX_CHOLESKY_UNKNOWNS = 500
+"""Unknowns up to which Cholesky's factorisation of an array is tried, where the band is wide: it takes 2 ms."""
 MAX_BANDWIDTH = 100
 """Diagonals on a side of the band up to which Cholesky's factorisation is tried first."""
 MAX_DENSE_ROWS = 300
@@ -70,7 +72,9 @@ def inertia(K: Any, C: Any = None, units: np.ndarray | None = None, zero: float 
     _check(K)
     if not n:
         return Inertia(0, 0, 0)
-    if (_is_definite if is_small else _is_definite_band)(K, _positive(units, n), zero):
+    units = _positive(units, n)
+    if (not is_small and _is_definite_band(K, units, zero)) or (
+            n <= MAX_CHOLESKY_UNKNOWNS and _is_definite(dense(K), units, zero)):
         return Inertia(0, 0, n - _independent(C).shape[0])
     K, C, _ = scaled((K + K.T) / 2, C, units)
     if is_small:
