@@ -3,7 +3,8 @@
     python tests/benchmarks/relaxation.py [--out FILE.csv] [--repetitions 3]
 
 Last column: the kinetic energy of a run without resets after as many steps, relative to the energy lost by the scene,
-with the same integrator and tol = 1e-2. CPU is the minimum of the repetitions.
+with the same integrator and tol = 1e-2. CPU is the minimum of the repetitions. Then `equilibrium` of small
+scenes: of a line drawn straight, of two bundled ones with one line, and of a span with adjusted lengths.
 """
 
 import os
@@ -112,12 +113,26 @@ def row(name: str, repetitions: int) -> dict:
             "residual_N": state.residual, **beside, "kinetic_left": left_without_resets(scene, report.steps, lost)}
 
 
+AT_REST: dict[str, Callable[[], fu.Scene]] = {
+    "line of 20 elements": lambda: rope(length=1.1),
+    **{name: (lambda name=name: fu.load_scene(name)) for name in ("mooring", "mooring_on_bed", "overhead_span")}}
+
+
+def at_rest(name: str, repetitions: int) -> dict:
+    """Return a line of the table of states of rest."""
+    scene = AT_REST[name]()
+    taken, state = least(scene.equilibrium, 5 * repetitions)
+    return {"scene": name, "unknowns": state.model.n_band + state.model.n_border_dof + state.model.n_extra,
+            "iterations": state.iterations, "residual_N": state.residual, "ms": 1e3 * taken}
+
+
 def main() -> None:
     """Measure and print."""
     options = arguments(__doc__, repetitions=(3, "of every search"))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", fu.FunicularWarning)
         show([row(name, options.repetitions) for name in few(SCENES)], options.out)
+        show([at_rest(name, options.repetitions) for name in few(AT_REST)], table="at rest")
 
 
 if __name__ == "__main__":

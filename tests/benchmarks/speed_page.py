@@ -188,6 +188,18 @@ a joint, loops fill in more.""",
                 "us_per_step_and_body": "µs a step and body", "iterations_per_step": "iterations a step",
                 "multiplications": "multiplications a body", "set_up_s": "set-up, s"})]),
     Section(
+        "Many parts",
+        """Slides on one cable with three elements for each, and nets of bodies; generalised-alpha. An exponent is that
+of the number of parts, from one row to the next. A cable with more than 24 slides is divided into substructures, and
+the equations of its slides are a band in the order in which they stand on it. Rotations of bodies that are held at
+their mass centres alone are eliminated by themselves.""",
+        [Table("many_parts",
+               {"scene": "scene", "parts": "parts", "us_per_step_and_part": "µs a step and part",
+                "exponent": "exponent", "iterations_per_step": "iterations a step",
+                "factorisations_per_step": "factorisations a step", "MB": "MB",
+                "exponent_of_memory": "exponent of memory"})],
+        test="tests/engine/test_linear_cost.py"),
+    Section(
         "Threads",
         """Wall time of a step with one thread over that with two, `genalpha`, `cable12`, with the same bits. Steps
 of 20 µs keep one matrix; steps for `tol=1e-3` take a new one in every tenth step. Fewer than 250 elements are not
@@ -271,7 +283,12 @@ velocities.""",
         [Table("relaxation",
                {"scene": "scene", "steps": "steps", "resets": "resets", "ms": "ms",
                 "equilibrium_ms": "equilibrium, ms", "apart_m": "apart, m",
-                "kinetic_left": "kinetic energy without resets"})],
+                "kinetic_left": "kinetic energy without resets"}),
+         Table("relaxation",
+               {"scene": "scene", "unknowns": "unknowns", "iterations": "iterations", "residual_N": "residual, N",
+                "ms": "ms"},
+               table="at rest",
+               text="""`scene.equilibrium` of small scenes.""")],
         test="tests/statics/test_relaxation.py"),
     Section(
         "Set-up",
