@@ -172,7 +172,7 @@ def _kernel(program: Program, family: Family, several: bool) -> Iterator[str | T
     lines = sum(len(section.lines) for section in sections(program))
     entries = sum(a.size for a in program.outputs)
     yield (f"  {definitions} intermediate results and {entries} numbers of output stand in {lines} lines of C before "
-           "stages are shared" + ("; compiled for several elements at once as well (blocks.c)" if several else ""))
+           "stages are shared" + ("; compiled for several elements or points at once as well" if several else ""))
     yield _stages(program, _macros(program.name, family), total)
     if total:
         yield _ranked("Operations by term (# is a number, * a direction)", every, "operations", total)

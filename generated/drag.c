@@ -291,16 +291,16 @@
         M_y[g] = A[3*g]*CM_y[0] + A[3*g + 1]*CM_y[1] + A[3*g + 2]*CM_y[2]; \
         M_z[g] = A[3*g]*CM_z[0] + A[3*g + 1]*CM_z[1] + A[3*g + 2]*CM_z[2];)
 
-/* drag a length of a cable, and its derivatives; 104 add, 245 mul, 18 div, 3 sqrt */
-void drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f, fu_real *f_t, fu_real *f_w)
+/* drag a length of a cable, and its derivatives; 104 add, 245 mul, 3 div, 3 sqrt */
+FU_KERNEL void drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f, fu_real *f_t, fu_real *f_w)
 {
     /* tangent */
     const fu_real
         len_t = FU_SQRT(t[0]*t[0] + t[1]*t[1] + t[2]*t[2]),
         inv_len_t = 1.0/len_t,
-        i_x = t[0]/len_t,
-        i_y = t[1]/len_t,
-        i_z = t[2]/len_t;
+        i_x = inv_len_t*t[0],
+        i_y = inv_len_t*t[1],
+        i_z = inv_len_t*t[2];
     /* velocities along and across */
     const fu_real
         w_t = i_x*w[0] + i_y*w[1] + i_z*w[2],
@@ -321,9 +321,10 @@ void drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_r
     /* derivatives */
     const fu_real
         d_t0_len_t = inv_len_t*t[0],
-        d_t0_i_x = -d_t0_len_t*t[0]/(len_t*len_t) + 1.0/len_t,
-        d_t0_i_y = -(d_t0_len_t*t[1]/(len_t*len_t)),
-        d_t0_i_z = -(d_t0_len_t*t[2]/(len_t*len_t)),
+        d_t0_inv_len_t = -(d_t0_len_t*inv_len_t*inv_len_t),
+        d_t0_i_x = d_t0_inv_len_t*t[0] + inv_len_t,
+        d_t0_i_y = d_t0_inv_len_t*t[1],
+        d_t0_i_z = d_t0_inv_len_t*t[2],
         d_t0_w_t = d_t0_i_x*w[0] + d_t0_i_y*w[1] + d_t0_i_z*w[2],
         d_t0_w_n_x = -d_t0_i_x*w_t - d_t0_w_t*i_x,
         d_t0_w_n_y = -d_t0_i_y*w_t - d_t0_w_t*i_y,
@@ -336,9 +337,10 @@ void drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_r
         d_t0_F_y = across*d_t0_w_n_y + along*d_t0_i_y + d_t0_across*w_n_y + d_t0_along*i_y,
         d_t0_F_z = across*d_t0_w_n_z + along*d_t0_i_z + d_t0_across*w_n_z + d_t0_along*i_z,
         d_t1_len_t = inv_len_t*t[1],
-        d_t1_i_x = -(d_t1_len_t*t[0]/(len_t*len_t)),
-        d_t1_i_y = -d_t1_len_t*t[1]/(len_t*len_t) + 1.0/len_t,
-        d_t1_i_z = -(d_t1_len_t*t[2]/(len_t*len_t)),
+        d_t1_inv_len_t = -(d_t1_len_t*inv_len_t*inv_len_t),
+        d_t1_i_x = d_t1_inv_len_t*t[0],
+        d_t1_i_y = d_t1_inv_len_t*t[1] + inv_len_t,
+        d_t1_i_z = d_t1_inv_len_t*t[2],
         d_t1_w_t = d_t1_i_x*w[0] + d_t1_i_y*w[1] + d_t1_i_z*w[2],
         d_t1_w_n_x = -d_t1_i_x*w_t - d_t1_w_t*i_x,
         d_t1_w_n_y = -d_t1_i_y*w_t - d_t1_w_t*i_y,
@@ -351,9 +353,10 @@ void drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_r
         d_t1_F_y = across*d_t1_w_n_y + along*d_t1_i_y + d_t1_across*w_n_y + d_t1_along*i_y,
         d_t1_F_z = across*d_t1_w_n_z + along*d_t1_i_z + d_t1_across*w_n_z + d_t1_along*i_z,
         d_t2_len_t = inv_len_t*t[2],
-        d_t2_i_x = -(d_t2_len_t*t[0]/(len_t*len_t)),
-        d_t2_i_y = -(d_t2_len_t*t[1]/(len_t*len_t)),
-        d_t2_i_z = -d_t2_len_t*t[2]/(len_t*len_t) + 1.0/len_t,
+        d_t2_inv_len_t = -(d_t2_len_t*inv_len_t*inv_len_t),
+        d_t2_i_x = d_t2_inv_len_t*t[0],
+        d_t2_i_y = d_t2_inv_len_t*t[1],
+        d_t2_i_z = d_t2_inv_len_t*t[2] + inv_len_t,
         d_t2_w_t = d_t2_i_x*w[0] + d_t2_i_y*w[1] + d_t2_i_z*w[2],
         d_t2_w_n_x = -d_t2_i_x*w_t - d_t2_w_t*i_x,
         d_t2_w_n_y = -d_t2_i_y*w_t - d_t2_w_t*i_y,
@@ -398,8 +401,31 @@ void drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_r
     DRAG_OUTPUTS
 }
 
+/* drag a length of a cable; 14 add, 29 mul, 1 div, 3 sqrt */
+FU_KERNEL void drag_force_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f)
+{
+    /* tangent */
+    fu_real i[3];
+    const fu_real
+        len_t = FU_SQRT(t[0]*t[0] + t[1]*t[1] + t[2]*t[2]),
+        inv_len_t = 1.0/len_t;
+    FU_EACH(row, 3, i[row] = inv_len_t*t[row];)
+    /* velocities along and across */
+    fu_real w_n[3];
+    const fu_real w_t = i[0]*w[0] + i[1]*w[1] + i[2]*w[2];
+    FU_EACH(row, 3, w_n[row] = -i[row]*w_t + w[row];)
+    const fu_real
+        size_n = FU_SQRT(c[2]*c[2] + w_n[0]*w_n[0] + w_n[1]*w_n[1] + w_n[2]*w_n[2]),
+        size_t = FU_SQRT(c[2]*c[2] + w_t*w_t);
+    /* force */
+    const fu_real
+        across = c[0]*len_t*size_n,
+        along = c[1]*len_t*size_t*w_t;
+    FU_EACH(row, 3, f[row] = across*w_n[row] + along*i[row];)
+}
+
 /* lift a length of a cable, and its derivatives; 101 add, 236 mul, 2 div, 2 sqrt */
-void drag_lift_along_cable(const fu_real *t, const fu_real *w, const fu_real *c_lift, fu_real *f, fu_real *f_t, fu_real *f_w)
+FU_KERNEL void drag_lift_along_cable(const fu_real *t, const fu_real *w, const fu_real *c_lift, fu_real *f, fu_real *f_t, fu_real *f_w)
 {
     /* flow across */
     const fu_real
@@ -488,7 +514,7 @@ void drag_lift_along_cable(const fu_real *t, const fu_real *w, const fu_real *c_
 }
 
 /* drag, lift and moment a length of a beam by the angle of attack of its section (strip theory; Den Hartog 1932); 338 add, 760 mul, 3 div, 2 sqrt */
-void drag_on_section(const fu_real *t, const fu_real *d, const fu_real *w, const fu_real *c_section, const fu_real *polar, fu_real *f, fu_real *K)
+FU_KERNEL void drag_on_section(const fu_real *t, const fu_real *d, const fu_real *w, const fu_real *c_section, const fu_real *polar, fu_real *f, fu_real *K)
 {
     /* flow and chord across the axis */
     const fu_real
@@ -881,6 +907,7 @@ void drag_on_section(const fu_real *t, const fu_real *d, const fu_real *w, const
     K[80] = angle_w_z*on_d_angle_z + d_w2_on_d_z;
 }
 
+#ifndef FU_BLOCK
 /* drag on a point, and its derivatives; 6 add, 23 mul, 1 div, 1 sqrt */
 void drag_on_point(const fu_real *w, const fu_real *c_point, fu_real *f, fu_real *f_w)
 {
@@ -923,7 +950,9 @@ void drag_on_point(const fu_real *w, const fu_real *c_point, fu_real *f, fu_real
     f_w[7] = d_w1_F_z;
     f_w[8] = d_w2_F_z;
 }
+#endif
 
+#ifndef FU_BLOCK
 /* drag and lift on a body with a span, and their derivatives; 75 add, 156 mul, 1 div, 1 sqrt */
 void drag_on_foil(const fu_real *w, const fu_real *s, const fu_real *c_foil, const fu_real *coefficients, fu_real *f, fu_real *f_w)
 {
@@ -996,9 +1025,10 @@ void drag_on_foil(const fu_real *w, const fu_real *s, const fu_real *c_foil, con
     f_w[7] = F_angle_z*lifted_y + d_w1_F_z;
     f_w[8] = F_angle_z*lifted_z + d_w2_F_z;
 }
+#endif
 
 /* impulse of the fluid along a cable, and its mass (Lighthill 1971; Lagrange's equations of T); 11 add, 31 mul, 1 div */
-void drag_impulse_of_cable(const fu_real *t, const fu_real *w, const fu_real *m, fu_real *p, fu_real *M)
+FU_KERNEL void drag_impulse_of_cable(const fu_real *t, const fu_real *w, const fu_real *m, fu_real *p, fu_real *M)
 {
     /* difference of the added masses */
     const fu_real less = m[0] - m[1];
@@ -1019,7 +1049,7 @@ void drag_impulse_of_cable(const fu_real *t, const fu_real *w, const fu_real *m,
 }
 
 /* force of the inertia of the fluid on a length of cable (Lighthill 1971; Lagrange's equations of T); 85 add, 124 mul, 1 div, 1 sqrt */
-void drag_inertia_of_cable(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *g, fu_real *power)
+FU_KERNEL void drag_inertia_of_cable(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *g, fu_real *power)
 {
     /* motion past the fluid */
     fu_real w[3], w_rate[3], material[3], c_place[3];
@@ -1055,7 +1085,7 @@ void drag_inertia_of_cable(const fu_real *t, const fu_real *t_rate, const fu_rea
 }
 
 /* derivatives of the force of the inertia of the fluid on a cable (derivatives of Lighthill 1971; Lagrange's equations of T); 545 add, 1059 mul, 1 div, 1 sqrt */
-void drag_inertia_of_cable_tangent(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_t, fu_real *f_t_rate, fu_real *f_r, fu_real *f_v, fu_real *g_t, fu_real *g_r, fu_real *g_v)
+FU_KERNEL void drag_inertia_of_cable_tangent(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_t, fu_real *f_t_rate, fu_real *f_r, fu_real *f_v, fu_real *g_t, fu_real *g_r, fu_real *g_v)
 {
     DRAG_MOTION_PAST_THE_FLUID
     DRAG_TANGENT_AND_ITS_RATE_2
@@ -1280,6 +1310,7 @@ void drag_inertia_of_cable_tangent(const fu_real *t, const fu_real *t_rate, cons
     g_v[8] = d_w_z_G_t_z;
 }
 
+#ifndef FU_BLOCK
 /* impulse of the fluid along a cable over a step (Lighthill 1971; Lagrange's equations of T; Gonzalez 1996); 58 add, 105 mul, 3 div */
 void drag_inertia_step(const fu_real *t, const fu_real *t_next, const fu_real *w, const fu_real *w_next, const fu_real *m, fu_real *dp, fu_real *g)
 {
@@ -1318,7 +1349,9 @@ void drag_inertia_step(const fu_real *t, const fu_real *t_next, const fu_real *w
     g[1] = scale*(-mean_y*(n0 + n1) + pull_y*(0.5*size + 0.5*size_next));
     g[2] = scale*(-mean_z*(n0 + n1) + pull_z*(0.5*size + 0.5*size_next));
 }
+#endif
 
+#ifndef FU_BLOCK
 /* kinetic energy of the fluid along a rope, and its derivatives (Lighthill 1971; Lagrange's equations of T); 85 add, 128 mul, 1 div, 1 sqrt */
 void drag_inertia_of_span(fu_real growth, const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *y, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *T_r, fu_real *T_t, fu_real *T_v, fu_real *rate, fu_real *energy, fu_real *power)
 {
@@ -1357,7 +1390,9 @@ void drag_inertia_of_span(fu_real growth, const fu_real *t, const fu_real *t_rat
     energy[0] = T*wet[0];
     power[0] = -P_wet_rate[0]*U[0] - P_wet_rate[1]*U[1] - P_wet_rate[2]*U[2] + carried[0]*v[0] + carried[1]*v[1] + carried[2]*v[2] - strained[0]*y[0] - strained[1]*y[1] - strained[2]*y[2];
 }
+#endif
 
+#ifndef FU_BLOCK
 /* second derivatives of the kinetic energy of the fluid along a rope, and derivatives of the rate of the impulse (derivatives of Lighthill 1971; Lagrange's equations of T); 638 add, 1377 mul, 1 div, 1 sqrt */
 void drag_inertia_of_span_tangent(fu_real growth, const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *y, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *second, fu_real *rate_by)
 {
@@ -1802,7 +1837,9 @@ void drag_inertia_of_span_tangent(fu_real growth, const fu_real *t, const fu_rea
     rate_by[52] = d_w_rate_y_P_wet_rate_z;
     rate_by[53] = d_w_rate_z_P_wet_rate_z;
 }
+#endif
 
+#ifndef FU_BLOCK
 /* impulse of the fluid at a body, and its mass (Lamb, Hydrodynamics, art. 124; Taylor 1928); 42 add, 63 mul */
 void drag_impulse_of_point(const fu_real *A, const fu_real *C, const fu_real *w, fu_real *p, fu_real *M)
 {
@@ -1816,7 +1853,9 @@ void drag_impulse_of_point(const fu_real *A, const fu_real *C, const fu_real *w,
         M[3*g + 1] = M_y[g];
         M[3*g + 2] = M_z[g];)
 }
+#endif
 
+#ifndef FU_BLOCK
 /* force and moment of the inertia of the fluid on a body (Lamb, Hydrodynamics, art. 124; Taylor 1928); 117 add, 157 mul */
 void drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *moment, fu_real *power)
 {
@@ -1857,7 +1896,9 @@ void drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_real *om
     moment[2] = moment2;
     power[0] = -P_wet_rate_x*U[0] - P_wet_rate_y*U[1] - P_wet_rate_z*U[2] + carried_x*v[0] + carried_y*v[1] + carried_z*v[2] - strained_x*v[0] - strained_y*v[1] - strained_z*v[2];
 }
+#endif
 
+#ifndef FU_BLOCK
 /* derivatives of force and moment of the inertia of the fluid (derivatives of Lamb, Hydrodynamics, art. 124; Taylor 1928); 589 add, 865 mul */
 void drag_inertia_of_point_tangent(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_by, fu_real *moment_by)
 {
@@ -2162,7 +2203,9 @@ void drag_inertia_of_point_tangent(const fu_real *A, const fu_real *C, const fu_
     moment_by[34] = 0.0;
     moment_by[35] = 0.0;
 }
+#endif
 
+#ifndef FU_BLOCK
 /* impulse of the fluid at a body over a step, and its moment (Lamb, Hydrodynamics, art. 124; Taylor 1928; Simo & Wong 1991; Gonzalez 1996); 306 add, 462 mul */
 void drag_inertia_of_point_step(const fu_real *A, const fu_real *A_next, const fu_real *C, const fu_real *w, const fu_real *w_next, const fu_real *theta, const fu_real *turning, fu_real *dp, fu_real *p, fu_real *moment, fu_real *more)
 {
@@ -2232,7 +2275,9 @@ void drag_inertia_of_point_step(const fu_real *A, const fu_real *A_next, const f
     more[1] = -0.25*theta[0]*turning[2] + 0.25*theta[2]*turning[0];
     more[2] = 0.25*theta[0]*turning[1] - 0.25*theta[1]*turning[0];
 }
+#endif
 
+#ifndef FU_BLOCK
 /* wet part of a sphere (Archimedes; potential of the hydrostatic pressure); 5 add, 10 mul */
 void drag_wet_sphere(const fu_real *u, fu_real *e, fu_real *c, fu_real *c_u, fu_real *c_uu)
 {
@@ -2244,7 +2289,9 @@ void drag_wet_sphere(const fu_real *u, fu_real *e, fu_real *c, fu_real *c_u, fu_
     c_u[0] = -(0.75*h*(h - 2.0));
     c_uu[0] = -(1.5*(h - 1.0));
 }
+#endif
 
+#ifndef FU_BLOCK
 /* wet part of a circle (Archimedes; potential of the hydrostatic pressure); 5 add, 11 mul, 1 div, 1 sin, 1 cos */
 void drag_wet_section(const fu_real *phi, fu_real *e, fu_real *c, fu_real *c_u, fu_real *c_uu)
 {
@@ -2258,7 +2305,9 @@ void drag_wet_section(const fu_real *phi, fu_real *e, fu_real *c, fu_real *c_u, 
     c_u[0] = 0.6366197723675814*cos_phi;
     c_uu[0] = -(0.6366197723675814*sin_phi/cos_phi);
 }
+#endif
 
+#ifndef FU_BLOCK
 /* wet part of a column at its lower end (Archimedes; potential of the hydrostatic pressure); 6 add, 6 mul, 4 div */
 void drag_wet_column(const fu_real *u, const fu_real *delta, fu_real *e, fu_real *c, fu_real *c_u, fu_real *c_uu)
 {
@@ -2268,3 +2317,4 @@ void drag_wet_column(const fu_real *u, const fu_real *delta, fu_real *e, fu_real
     c_u[0] = 0.25*(delta[0] + u[0] + 1.0)/delta[0];
     c_uu[0] = 0.25/delta[0];
 }
+#endif

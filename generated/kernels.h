@@ -3,8 +3,8 @@
  * comments above a declaration say what its kernels give, units and shapes; manifest.json says more.
  * `python -m funicular.generated` prints where the sources are.
  * The same text compiles for double, with FU_COMPLEX for complex numbers (verification by complex step), and with
- * FU_BLOCK for so many doubles at once, one an element (blocks.c). Stages that several kernels have alike are macros in
- * capital letters, at the head of their file or in a header *_stages.h.
+ * FU_BLOCK for so many doubles at once, one an element (blocks.c) or a point (point_blocks.c). Stages that several
+ * kernels have alike are macros in capital letters, at the head of their file or in a header *_stages.h.
  */
 #ifndef FUNICULAR_KERNELS_H
 #define FUNICULAR_KERNELS_H
@@ -961,6 +961,13 @@ typedef void fu_drag_along_cable_kernel(const fu_real *t, const fu_real *w, cons
 fu_drag_along_cable_kernel drag_along_cable;
 /* t 2, w 2, c 3, f 2, f_t 2x2, f_w 2x2 */
 fu_drag_along_cable_kernel planar_drag_along_cable;
+
+typedef void fu_drag_force_along_cable_kernel(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f);
+/* drag a length of a cable: t [1]; w [m/s]; c [N s^2/m^3, N s^2/m^3, m/s] -> f [N/m] */
+/* t 3, w 3, c 3, f 3 */
+fu_drag_force_along_cable_kernel drag_force_along_cable;
+/* t 2, w 2, c 3, f 2 */
+fu_drag_force_along_cable_kernel planar_drag_force_along_cable;
 
 typedef void fu_drag_lift_along_cable_kernel(const fu_real *t, const fu_real *w, const fu_real *c_lift, fu_real *f, fu_real *f_t, fu_real *f_w);
 /* lift a length of a cable, and its derivatives: t [1]; w [m/s]; c_lift [N s^2/m^3, m/s] -> f [N/m]; f_t [N/m]; f_w
@@ -2339,6 +2346,7 @@ typedef struct {
     const char *name;
     int dim;
     fu_drag_along_cable_kernel *along_cable;
+    fu_drag_force_along_cable_kernel *force_along_cable;
     fu_drag_lift_along_cable_kernel *lift_along_cable;
     fu_drag_on_section_kernel *on_section;
     fu_drag_on_point_kernel *on_point;

@@ -140,15 +140,15 @@
         c_place_x = up[0]*wet[1], \
         c_place_y = up[1]*wet[1];
 
-/* drag a length of a cable, and its derivatives; 51 add, 136 mul, 11 div, 3 sqrt */
-void planar_drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f, fu_real *f_t, fu_real *f_w)
+/* drag a length of a cable, and its derivatives; 51 add, 138 mul, 3 div, 3 sqrt */
+FU_KERNEL void planar_drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f, fu_real *f_t, fu_real *f_w)
 {
     /* tangent */
     const fu_real
         len_t = FU_SQRT(t[0]*t[0] + t[1]*t[1]),
         inv_len_t = 1.0/len_t,
-        i_x = t[0]/len_t,
-        i_y = t[1]/len_t;
+        i_x = inv_len_t*t[0],
+        i_y = inv_len_t*t[1];
     /* velocities along and across */
     const fu_real
         w_t = i_x*w[0] + i_y*w[1],
@@ -167,8 +167,9 @@ void planar_drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *
     /* derivatives */
     const fu_real
         d_t0_len_t = inv_len_t*t[0],
-        d_t0_i_x = -d_t0_len_t*t[0]/(len_t*len_t) + 1.0/len_t,
-        d_t0_i_y = -(d_t0_len_t*t[1]/(len_t*len_t)),
+        d_t0_inv_len_t = -(d_t0_len_t*inv_len_t*inv_len_t),
+        d_t0_i_x = d_t0_inv_len_t*t[0] + inv_len_t,
+        d_t0_i_y = d_t0_inv_len_t*t[1],
         d_t0_w_t = d_t0_i_x*w[0] + d_t0_i_y*w[1],
         d_t0_w_n_x = -d_t0_i_x*w_t - d_t0_w_t*i_x,
         d_t0_w_n_y = -d_t0_i_y*w_t - d_t0_w_t*i_y,
@@ -179,8 +180,9 @@ void planar_drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *
         d_t0_F_x = across*d_t0_w_n_x + along*d_t0_i_x + d_t0_across*w_n_x + d_t0_along*i_x,
         d_t0_F_y = across*d_t0_w_n_y + along*d_t0_i_y + d_t0_across*w_n_y + d_t0_along*i_y,
         d_t1_len_t = inv_len_t*t[1],
-        d_t1_i_x = -(d_t1_len_t*t[0]/(len_t*len_t)),
-        d_t1_i_y = -d_t1_len_t*t[1]/(len_t*len_t) + 1.0/len_t,
+        d_t1_inv_len_t = -(d_t1_len_t*inv_len_t*inv_len_t),
+        d_t1_i_x = d_t1_inv_len_t*t[0],
+        d_t1_i_y = d_t1_inv_len_t*t[1] + inv_len_t,
         d_t1_w_t = d_t1_i_x*w[0] + d_t1_i_y*w[1],
         d_t1_w_n_x = -d_t1_i_x*w_t - d_t1_w_t*i_x,
         d_t1_w_n_y = -d_t1_i_y*w_t - d_t1_w_t*i_y,
@@ -219,6 +221,34 @@ void planar_drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *
     f_w[3] = d_w1_F_y;
 }
 
+/* drag a length of a cable; 9 add, 22 mul, 1 div, 3 sqrt */
+FU_KERNEL void planar_drag_force_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f)
+{
+    /* tangent */
+    const fu_real
+        len_t = FU_SQRT(t[0]*t[0] + t[1]*t[1]),
+        inv_len_t = 1.0/len_t,
+        i_x = inv_len_t*t[0],
+        i_y = inv_len_t*t[1];
+    /* velocities along and across */
+    const fu_real
+        w_t = i_x*w[0] + i_y*w[1],
+        w_n_x = -i_x*w_t + w[0],
+        w_n_y = -i_y*w_t + w[1],
+        size_n = FU_SQRT(c[2]*c[2] + w_n_x*w_n_x + w_n_y*w_n_y),
+        size_t = FU_SQRT(c[2]*c[2] + w_t*w_t);
+    /* force */
+    const fu_real
+        across = c[0]*len_t*size_n,
+        along = c[1]*len_t*size_t*w_t,
+        F_x = across*w_n_x + along*i_x,
+        F_y = across*w_n_y + along*i_y;
+    /* outputs */
+    f[0] = F_x;
+    f[1] = F_y;
+}
+
+#ifndef FU_BLOCK
 /* drag on a point, and its derivatives; 4 add, 14 mul, 1 div, 1 sqrt */
 void planar_drag_on_point(const fu_real *w, const fu_real *c_point, fu_real *f, fu_real *f_w)
 {
@@ -247,7 +277,9 @@ void planar_drag_on_point(const fu_real *w, const fu_real *c_point, fu_real *f, 
     f_w[2] = d_w0_F_y;
     f_w[3] = d_w1_F_y;
 }
+#endif
 
+#ifndef FU_BLOCK
 /* drag and lift on a body with a span, and their derivatives; 18 add, 45 mul, 1 div, 1 sqrt */
 void planar_drag_on_foil(const fu_real *w, const fu_real *s, const fu_real *c_foil, const fu_real *coefficients, fu_real *f, fu_real *f_w)
 {
@@ -284,9 +316,10 @@ void planar_drag_on_foil(const fu_real *w, const fu_real *s, const fu_real *c_fo
     f_w[2] = F_angle_y*lifted_x + d_w0_F_y;
     f_w[3] = F_angle_y*lifted_y + d_w1_F_y;
 }
+#endif
 
 /* impulse of the fluid along a cable, and its mass (Lighthill 1971; Lagrange's equations of T); 7 add, 17 mul, 1 div */
-void planar_drag_impulse_of_cable(const fu_real *t, const fu_real *w, const fu_real *m, fu_real *p, fu_real *M)
+FU_KERNEL void planar_drag_impulse_of_cable(const fu_real *t, const fu_real *w, const fu_real *m, fu_real *p, fu_real *M)
 {
     /* difference of the added masses */
     const fu_real less = m[0] - m[1];
@@ -304,7 +337,7 @@ void planar_drag_impulse_of_cable(const fu_real *t, const fu_real *w, const fu_r
 }
 
 /* force of the inertia of the fluid on a length of cable (Lighthill 1971; Lagrange's equations of T); 47 add, 76 mul, 1 div, 1 sqrt */
-void planar_drag_inertia_of_cable(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *g, fu_real *power)
+FU_KERNEL void planar_drag_inertia_of_cable(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *g, fu_real *power)
 {
     PLANAR_DRAG_MOTION_PAST_THE_FLUID
     PLANAR_DRAG_TANGENT_AND_ITS_RATE
@@ -324,7 +357,7 @@ void planar_drag_inertia_of_cable(const fu_real *t, const fu_real *t_rate, const
 }
 
 /* derivatives of the force of the inertia of the fluid on a cable (derivatives of Lighthill 1971; Lagrange's equations of T); 210 add, 450 mul, 1 div, 1 sqrt */
-void planar_drag_inertia_of_cable_tangent(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_t, fu_real *f_t_rate, fu_real *f_r, fu_real *f_v, fu_real *g_t, fu_real *g_r, fu_real *g_v)
+FU_KERNEL void planar_drag_inertia_of_cable_tangent(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_t, fu_real *f_t_rate, fu_real *f_r, fu_real *f_v, fu_real *g_t, fu_real *g_r, fu_real *g_v)
 {
     PLANAR_DRAG_MOTION_PAST_THE_FLUID
     PLANAR_DRAG_TANGENT_AND_ITS_RATE
@@ -455,6 +488,7 @@ void planar_drag_inertia_of_cable_tangent(const fu_real *t, const fu_real *t_rat
     g_v[3] = d_w_y_G_t_y;
 }
 
+#ifndef FU_BLOCK
 /* impulse of the fluid along a cable over a step (Lighthill 1971; Lagrange's equations of T; Gonzalez 1996); 33 add, 69 mul, 3 div */
 void planar_drag_inertia_step(const fu_real *t, const fu_real *t_next, const fu_real *w, const fu_real *w_next, const fu_real *m, fu_real *dp, fu_real *g)
 {
@@ -487,7 +521,9 @@ void planar_drag_inertia_step(const fu_real *t, const fu_real *t_next, const fu_
     g[0] = scale*(-mean_x*(n0 + n1) + pull_x*(0.5*size + 0.5*size_next));
     g[1] = scale*(-mean_y*(n0 + n1) + pull_y*(0.5*size + 0.5*size_next));
 }
+#endif
 
+#ifndef FU_BLOCK
 /* kinetic energy of the fluid along a rope, and its derivatives (Lighthill 1971; Lagrange's equations of T); 47 add, 79 mul, 1 div, 1 sqrt */
 void planar_drag_inertia_of_span(fu_real growth, const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *y, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *T_r, fu_real *T_t, fu_real *T_v, fu_real *rate, fu_real *energy, fu_real *power)
 {
@@ -528,7 +564,9 @@ void planar_drag_inertia_of_span(fu_real growth, const fu_real *t, const fu_real
     energy[0] = T*wet[0];
     power[0] = -P_wet_rate_x*U[0] - P_wet_rate_y*U[1] + carried_x*v[0] + carried_y*v[1] - strained_x*y[0] - strained_y*y[1];
 }
+#endif
 
+#ifndef FU_BLOCK
 /* second derivatives of the kinetic energy of the fluid along a rope, and derivatives of the rate of the impulse (derivatives of Lighthill 1971; Lagrange's equations of T); 244 add, 588 mul, 1 div, 1 sqrt */
 void planar_drag_inertia_of_span_tangent(fu_real growth, const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *y, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *second, fu_real *rate_by)
 {
@@ -752,7 +790,9 @@ void planar_drag_inertia_of_span_tangent(fu_real growth, const fu_real *t, const
     rate_by[22] = d_w_rate_x_P_wet_rate_y;
     rate_by[23] = d_w_rate_y_P_wet_rate_y;
 }
+#endif
 
+#ifndef FU_BLOCK
 /* impulse of the fluid at a body, and its mass (Lamb, Hydrodynamics, art. 124; Taylor 1928); 10 add, 20 mul */
 void planar_drag_impulse_of_point(const fu_real *A, const fu_real *C, const fu_real *w, fu_real *p, fu_real *M)
 {
@@ -774,7 +814,9 @@ void planar_drag_impulse_of_point(const fu_real *A, const fu_real *C, const fu_r
     M[2] = M2_x;
     M[3] = M2_y;
 }
+#endif
 
+#ifndef FU_BLOCK
 /* force and moment of the inertia of the fluid on a body (Lamb, Hydrodynamics, art. 124; Taylor 1928); 46 add, 68 mul */
 void planar_drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *moment, fu_real *power)
 {
@@ -805,7 +847,9 @@ void planar_drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_r
     moment[0] = moment0;
     power[0] = -P_wet_rate_x*U[0] - P_wet_rate_y*U[1] + carried_x*v[0] + carried_y*v[1] - strained_x*v[0] - strained_y*v[1];
 }
+#endif
 
+#ifndef FU_BLOCK
 /* derivatives of force and moment of the inertia of the fluid (derivatives of Lamb, Hydrodynamics, art. 124; Taylor 1928); 143 add, 227 mul */
 void planar_drag_inertia_of_point_tangent(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_by, fu_real *moment_by)
 {
@@ -925,7 +969,9 @@ void planar_drag_inertia_of_point_tangent(const fu_real *A, const fu_real *C, co
     moment_by[4] = d_th1_moment0;
     moment_by[5] = 0.0;
 }
+#endif
 
+#ifndef FU_BLOCK
 /* impulse of the fluid at a body over a step, and its moment (Lamb, Hydrodynamics, art. 124; Taylor 1928; Simo & Wong 1991; Gonzalez 1996); 77 add, 144 mul */
 void planar_drag_inertia_of_point_step(const fu_real *A, const fu_real *A_next, const fu_real *C, const fu_real *w, const fu_real *w_next, const fu_real *theta, const fu_real *turning, fu_real *dp, fu_real *p, fu_real *moment, fu_real *more)
 {
@@ -982,7 +1028,9 @@ void planar_drag_inertia_of_point_step(const fu_real *A, const fu_real *A_next, 
     more[0] = -(0.25*theta[0]*turning[1]);
     more[1] = 0.25*theta[0]*turning[0];
 }
+#endif
 
+#ifndef FU_BLOCK
 /* wet part of a sphere (Archimedes; potential of the hydrostatic pressure); 5 add, 10 mul */
 void planar_drag_wet_sphere(const fu_real *u, fu_real *e, fu_real *c, fu_real *c_u, fu_real *c_uu)
 {
@@ -994,7 +1042,9 @@ void planar_drag_wet_sphere(const fu_real *u, fu_real *e, fu_real *c, fu_real *c
     c_u[0] = -(0.75*h*(h - 2.0));
     c_uu[0] = -(1.5*(h - 1.0));
 }
+#endif
 
+#ifndef FU_BLOCK
 /* wet part of a circle (Archimedes; potential of the hydrostatic pressure); 5 add, 11 mul, 1 div, 1 sin, 1 cos */
 void planar_drag_wet_section(const fu_real *phi, fu_real *e, fu_real *c, fu_real *c_u, fu_real *c_uu)
 {
@@ -1008,7 +1058,9 @@ void planar_drag_wet_section(const fu_real *phi, fu_real *e, fu_real *c, fu_real
     c_u[0] = 0.6366197723675814*cos_phi;
     c_uu[0] = -(0.6366197723675814*sin_phi/cos_phi);
 }
+#endif
 
+#ifndef FU_BLOCK
 /* wet part of a column at its lower end (Archimedes; potential of the hydrostatic pressure); 6 add, 6 mul, 4 div */
 void planar_drag_wet_column(const fu_real *u, const fu_real *delta, fu_real *e, fu_real *c, fu_real *c_u, fu_real *c_uu)
 {
@@ -1018,3 +1070,4 @@ void planar_drag_wet_column(const fu_real *u, const fu_real *delta, fu_real *e, 
     c_u[0] = 0.25*(delta[0] + u[0] + 1.0)/delta[0];
     c_uu[0] = 0.25/delta[0];
 }
+#endif

@@ -14,10 +14,11 @@ from setuptools.command.build_ext import build_ext
 THREADED = ("funicular.engine",)
 THREADS = "-pthread"
 MSVC = ["/std:c11", "/O2"]
+BLOCKS = ("generated/blocks.c", "generated/point_blocks.c")
 SOURCES = {"funicular.generated.kernels": ["generated/*.c"],
-           "funicular.engine": ["runtime/engine/**/*.c", "generated/blocks.c"]}
-"""Patterns of the C files of a module; blocks.c is compiled into the engine, with the options of its hot loops."""
-NOT_OF_KERNELS = ("generated/blocks.c", "generated/kernels.c")
+           "funicular.engine": ["runtime/engine/**/*.c", *BLOCKS]}
+"""Patterns of the C files of a module; blocks are compiled into the engine, with the options of its hot loops."""
+NOT_OF_KERNELS = (*BLOCKS, "generated/kernels.c")
 """C files in generated/ of another module, and Cython's own."""
 DEPENDENCIES = {"funicular.generated.kernels": ["generated/*.h"],
                 "funicular.engine": ["generated/*.h", "runtime/engine/**/*.h", "runtime/engine/**/*.pxi"]}

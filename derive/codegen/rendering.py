@@ -28,7 +28,8 @@ from .sharing import Sections, header, share
 TOOLS = ("sympy", "mpmath", "jinja2")
 WIDTH = 120
 HEADER, REGISTRY = "kernels.h", "registry.c"
-COMMON = (HEADER, REGISTRY, "blocks.h", "blocks.c", "kernels.pyx", "__init__.py", "__main__.py")
+COMMON = (HEADER, REGISTRY, "blocks.h", "blocks.c", "point_blocks.h", "point_blocks.c", "kernels.pyx", "__init__.py",
+          "__main__.py")
 """Files of all families; a library has the first two."""
 BLOCKS = ("elastic_force", "elastic_tangent", "damping_force", "dissipation")
 """Kernels of a law that are also compiled for several elements at once (blocks.c)."""
@@ -36,6 +37,9 @@ MAX_BLOCK_OPERATIONS = 3000
 """Largest kernels in blocks.c: the tangents of beam24 would take longer to compile than all others."""
 MIN_OPERATIONS_PER_OUTPUT = 6
 """Smallest kernels in blocks.c, per output number: below, the sorting of numbers by element costs the gain."""
+POINT_BLOCKS = {"drag": ("along_cable", "force_along_cable", "lift_along_cable", "on_section", "inertia_of_cable",
+                         "inertia_of_cable_tangent", "impulse_of_cable")}
+"""Kernels by role that are also compiled for several points of quadrature at once (point_blocks.c)."""
 
 
 @dataclass(frozen=True)
@@ -142,7 +146,8 @@ def render(every: list[Derived], wanted: Iterable[str], done: Callable[[str], No
         files[header(group)] = environment.get_template("stages.h.jinja").render(group=group,
                                                                                  stages=shared[header(group)])
     blocks = {name for derived in every for name in block_kernels(derived)}
-    laws = [derived for derived in every if block_kernels(derived)]
+    laws = [derived for derived in every if derived.family.role == "law" and block_kernels(derived)]
+    points = {role: [derived for derived in every if derived.family.role == role] for role in POINT_BLOCKS}
     forms = {kernel: program for kernel in BLOCKS for derived in reversed(laws) for program in derived.programs
              if program.name in blocks and program.name == f"{derived.family.name}_{kernel}"}
     of_roles = tables(every, layout_of)
@@ -150,10 +155,18 @@ def render(every: list[Derived], wanted: Iterable[str], done: Callable[[str], No
               "signature": signature, "form": _form, "calls": {_form(p): _call(p) for d in every for p in d.programs},
               "blocks": blocks,
               "entry": _entry, "laws": laws, "kernels": BLOCKS, "block_forms": forms,
+              "points": points, "point_kernels": POINT_BLOCKS,
+              "forms_at_points": {role: _forms_at_points(families, role) for role, families in points.items()},
               "described": inspect.getsource(described)}
     for name in COMMON if layout_of is None else (HEADER, REGISTRY):
         files[name] = environment.get_template(f"{name}.jinja").render(**common)
     return files
+
+
+def _forms_at_points(families: list[Derived], role: str) -> dict[str, Program | Recorded]:
+    """Return a program of each kernel of a role for several points, for the names of its arguments."""
+    return {kernel: program for kernel in POINT_BLOCKS[role] for derived in families for program in derived.programs
+            if program.name == derived.family.kernel(kernel)}
 
 
 def _sections(derived: Derived) -> Sections:
@@ -240,7 +253,10 @@ def _entry(derived: Derived, table: Table) -> list[str]:
 
 
 def block_kernels(derived: Derived) -> list[str]:
-    """Return the names of a law's kernels that are also compiled for several elements at once."""
+    """Return the names of a family's kernels that are also compiled for several elements or points at once."""
+    if derived.family.role in POINT_BLOCKS:
+        hot = {derived.family.kernel(kernel) for kernel in POINT_BLOCKS[derived.family.role]}
+        return [p.name for p in derived.programs if p.name in hot]
     if derived.family.role != "law":
         return []
     hot = {f"{derived.family.name}_{kernel}" for kernel in BLOCKS}

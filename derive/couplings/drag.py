@@ -35,8 +35,8 @@ def families() -> list[CouplingFamily]:
 def build(dim: int) -> list[Program]:
     """Return the kernels in space or in the plane."""
     lift = [lift_along_cable(), section_flow.on_section(DRAGS[dim], RELATIVE)] if dim == 3 else []
-    return [along_cable(dim), *lift, on_point(dim), on_foil(dim), *added_mass.build(DRAGS[dim], dim),
-            *wetness.build(DRAGS[dim], dim)]
+    return [along_cable(dim), force_along_cable(dim), *lift, on_point(dim), on_foil(dim),
+            *added_mass.build(DRAGS[dim], dim), *wetness.build(DRAGS[dim], dim)]
 
 
 def _size(p: Program, name: str, square: sp.Expr, least: sp.Expr) -> sp.Expr:
@@ -49,13 +49,32 @@ def _size(p: Program, name: str, square: sp.Expr, least: sp.Expr) -> sp.Expr:
 def along_cable(dim: int) -> Program:
     """Return the kernel of the force a length of the undeformed cable, with its derivatives."""
     p = Program(f"{DRAGS[dim]}_along_cable", "drag a length of a cable, and its derivatives", SOURCE)
+    t, w, f = _force_along_cable(p, dim)
+    p.stage("derivatives")
+    by_t, by_w = jacobian(p, f, t), jacobian(p, f, w)
+    p.output("f", f, "N/m", "force a length of the undeformed cable")
+    p.output("f_t", by_t, "N/m", "derivatives of f by t")
+    p.output("f_w", by_w, "N s/m^2", "derivatives of f by w")
+    return p
+
+
+def force_along_cable(dim: int) -> Program:
+    """Return the kernel of the same force alone."""
+    p = Program(f"{DRAGS[dim]}_force_along_cable", "drag a length of a cable", SOURCE)
+    f = _force_along_cable(p, dim)[-1]
+    p.output("f", f, "N/m", "force a length of the undeformed cable")
+    return p
+
+
+def _force_along_cable(p: Program, dim: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Stage: the force a length of the undeformed cable. Return the slope, the relative velocity and the force."""
     t = p.input("t", dim, "1", "slope r_x of the axis")
     w = p.input("w", dim, "m/s", RELATIVE)
     normal, tangential, least = p.input("c", 3, "N s^2/m^3, N s^2/m^3, m/s",
                                         "rho d C_n/2, rho pi d C_t/2, and the least size of velocities")
     p.stage("tangent")
     length = _size(p, "len_t", t.dot(t), sp.S.Zero)
-    i = p.vector("i", t / length)
+    i = p.vector("i", t * sp.Symbol("inv_len_t"))
     p.stage("velocities along and across")
     w_t = p.define("w_t", i.dot(w))
     n = p.vector("w_n", w - w_t * i)
@@ -64,13 +83,7 @@ def along_cable(dim: int) -> Program:
     p.stage("force")
     across = p.define("across", length * normal * size_n)
     along = p.define("along", length * tangential * size_t * w_t)
-    f = p.vector("F", across * n + along * i)
-    p.stage("derivatives")
-    by_t, by_w = jacobian(p, f, t), jacobian(p, f, w)
-    p.output("f", f, "N/m", "force a length of the undeformed cable")
-    p.output("f_t", by_t, "N/m", "derivatives of f by t")
-    p.output("f_w", by_w, "N s/m^2", "derivatives of f by w")
-    return p
+    return t, w, p.vector("F", across * n + along * i)
 
 
 def lift_along_cable() -> Program:

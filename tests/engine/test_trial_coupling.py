@@ -17,6 +17,7 @@ from pathlib import Path
 import funicular
 import numpy as np
 import pytest
+from funicular.derive.codegen.parallel_build import BLOCKS, NOT_OF_KERNELS
 
 TRIAL = Path(__file__).parent / "trial_coupling"
 TESTS = Path(__file__).parents[1]
@@ -75,9 +76,9 @@ def uses(tmp_path_factory):
     folder = tmp_path_factory.mktemp("trial")
     package = copied(folder)
     generated = package / "generated"
-    kernels = set(generated.glob("*.c")) - {generated / "kernels.c", generated / "blocks.c"}
+    kernels = set(generated.glob("*.c")) - {package / name for name in NOT_OF_KERNELS}
     compiled(generated / "kernels.c", kernels)
-    compiled(package / "engine.c", [*(package / "engine").rglob("*.c"), generated / "blocks.c"])
+    compiled(package / "engine.c", [*(package / "engine").rglob("*.c"), *(package / name for name in BLOCKS)])
     path = os.pathsep.join(map(str, (folder, TESTS)))
     done, verified = (subprocess.run([sys.executable, *command], capture_output=True, text=True,
                                      env=os.environ | {"PYTHONPATH": path})

@@ -67,7 +67,8 @@ def drag(family: CouplingFamily) -> list[Relation]:
     return [*([*lift, *section_flow()] if dim == 3 else []),
             Relation("on_foil", "f", "c |w_p| (C_D w_p + C_L s x w_p)", 0, lambda k, s, t, j: of_foil(k, s, 0, 0)),
             Relation("on_foil", "f_w", "df by w, coefficients with the angle", 1, of_foil, dim),
-            Relation("along_cable", "f", "derivative by w of |t| (c_n |w_n|^3 + c_t |w_t|^3)/3", 1, potential, dim),
+            *(Relation(kernel, "f", "derivative by w of |t| (c_n |w_n|^3 + c_t |w_t|^3)/3", 1, potential, dim)
+              for kernel in ("along_cable", "force_along_cable")),
             *(Relation("along_cable", f"f_{name}", f"df by {name}", 1,
                        from_kernel("along_cable", "f", **{name: entry(name)}), dim) for name in "tw"),
             Relation("on_point", "f", "derivative by w of c |w|^3/3", 1, of_point, dim),

@@ -4,6 +4,7 @@
 
 #include "blocks.h"
 #include "kernels.h"
+#include "point_blocks.h"
 
 #include <stddef.h>
 

@@ -27,83 +27,29 @@ static surroundings surroundings_of(const fu_model *model, const fu_drag *drag, 
     return out;
 }
 
-void fu_fluid_on_element(const fu_model *model, const fu_drag *drag, int first, fu_quadrature_point point,
-                         const double *left, const double *on_slope, const fu_drag_sums *sums)
-{
-    const int dim = model->dim, n = model->cables[drag->cable].coordinates / dim;
-    for (int d = 0; d < dim; ++d) {
-        if (sums->total) sums->total[d] -= left[d];
-        for (int k = 0; sums->f && k < n; ++k)
-            sums->f[first + k * dim + d] += point.N[k] * left[d] - point.N_x[k] * on_slope[d];
-    }
-}
-
-/* Computes the force on the particles of a length of cable and that on its slope, times `part`; adds the external
- * power. */
-static void on_length(const fu_model *model, const fu_drag *drag, double t, const fu_drag_place *at, double part,
-                      double left[3], double on_slope[3], fu_drag_powers *power)
-{
-    double external;
-    const surroundings of = surroundings_of(model, drag, t, at->r);
-    drag->kernel->inertia_of_cable(at->r_x, at->r_x_rate, drag->added, drag->displaced, at->v, at->a, of.flow.U,
-                                   of.flow.rate, of.flow.gradient, &of.wet.part, drag->flow.up, left, on_slope,
-                                   &external);
-    for (int d = 0; d < model->dim; ++d) {
-        left[d] *= part;
-        on_slope[d] *= part;
-    }
-    if (power) power->external += part * external;
-}
-
-void fu_added_mass_at(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop,
-                      double *K)
-{
-    double left[3], on_slope[3];
-    (void)K;
-    on_length(model, drag, loop->t, &site->at, site->point.weight * model->load_fraction, left, on_slope,
-              loop->sums->power);
-    fu_fluid_on_element(model, drag, site->first, site->point, left, on_slope, loop->sums);
-}
-
-static void densities_at(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop,
+static void densities_at(const fu_model *model, const fu_drag *drag, const fu_drag_block *block, fu_drag_loop *loop,
                          double *K)
 {
-    double left[3], p[3], M[9], *out = loop->rows;
+    fu_points left[3], on_slope[3], impulse[3], M[9];
+    (void)drag;
     (void)K;
-    memset(out, 0, sizeof(double[FU_ADDED_MASS_DENSITIES]));
-    on_length(model, drag, loop->t, &site->at, model->load_fraction, left, out + 3, 0);
-    drag->kernel->impulse_of_cable(site->at.r_x, site->at.v, drag->added, p, M);
-    const double part = fu_wet_part(model, drag, site->at.r).part;
-    for (int d = 0; d < model->dim; ++d) out[d] = -left[d];
-    for (int i = 0; i < model->dim * model->dim; ++i) out[6 + i] = part * M[i];
-    loop->rows += FU_ADDED_MASS_DENSITIES;
+    fu_block_inertia(block, left, on_slope);
+    block->constants->kernel->impulse_of_cable(block->motion.r_x, block->motion.v, block->constants->added, impulse, M);
+    for (int p = 0; p < block->shapes.n; ++p, loop->rows += FU_ADDED_MASS_DENSITIES) {
+        double *out = loop->rows;
+        memset(out, 0, sizeof(double[FU_ADDED_MASS_DENSITIES]));
+        for (int d = 0; d < model->dim; ++d) {
+            out[d] = -model->load_fraction * left[d][p];
+            out[3 + d] = model->load_fraction * on_slope[d][p];
+        }
+        for (int i = 0; i < model->dim * model->dim; ++i) out[6 + i] = block->fluid.wet[0][p] * M[i][p];
+    }
 }
 
 void fu_added_mass_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
 {
     fu_drag_loop loop = {.t = state->t, .rows = out};
     fu_drag_visit(model, (const fu_drag *)coupling, state->q, state->v, 0, densities_at, &loop, 0);
-}
-
-void fu_added_mass_tangent_at(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop,
-                              double *K)
-{
-    const fu_drag_place *at = &site->at;
-    const surroundings of = surroundings_of(model, drag, loop->t, at->r);
-    const int dim = model->dim, all = model->cables[drag->cable].coordinates;
-    const double part = loop->weights.stiffness * model->load_fraction * site->point.weight, rate = loop->weights.rate;
-    const double *N = site->point.N, *N_x = site->point.N_x;
-    double f_t[9], f_t_rate[9], f_r[9], f_v[9], g_t[9], g_r[9], g_v[9];
-    drag->kernel->inertia_of_cable_tangent(at->r_x, at->r_x_rate, drag->added, drag->displaced, at->v, at->a, of.flow.U,
-                                           of.flow.rate, of.flow.gradient, &of.wet.part, drag->flow.up, f_t, f_t_rate,
-                                           f_r, f_v, g_t, g_r, g_v);
-    for (int i = 0; i < dim * dim; ++i) {
-        f_t[i] += rate * f_t_rate[i];
-        f_r[i] += rate * f_v[i];
-        g_r[i] += rate * g_v[i];
-    }
-    fu_add_field_matrix(dim, all, part, N, &(fu_field_change){f_t, N_x, f_r, N}, K);
-    fu_add_field_matrix(dim, all, -part, N_x, &(fu_field_change){g_t, N_x, g_r, N}, K);
 }
 
 /* Computes the state of a body's point with its axes, the fluid there, and the acceleration of the point at those of

@@ -103,6 +103,49 @@ static void wet_length_over_step(const fu_model *model, const fu_drag *drag, con
     }
 }
 
+/* A block of points of an element over a step: at both ends and half-way. */
+typedef struct {
+    fu_block_shapes shapes;
+    fu_block_motion motion[3];
+} block_step;
+
+static void place_in(int dim, const fu_block_motion *block, int point, fu_drag_place *out)
+{
+    fu_block_vector(dim, block->r, point, out->r);
+    fu_block_vector(dim, block->v, point, out->v);
+    fu_block_vector(dim, block->a, point, out->a);
+    fu_block_vector(dim, block->r_x, point, out->r_x);
+}
+
+/* Computes the force on particles and that on the slope at a point of a block over a step, times its weight, and adds
+ * the power. */
+static void on_point_in_step(const fu_model *model, const fu_drag *drag, const fu_equations *at,
+                             const block_step *block, int point, double left[3], double g[3], fu_drag_powers *power)
+{
+    const int dim = model->dim;
+    const double weight = block->shapes.weight[point], times[2] = {at->now->t, at->next->t};
+    fu_drag_place place[2], middle;
+    relative_motion motion[2];
+    double dp[3], rate[3], mean[3], M[9], on_place[3] = {0.0};
+    for (int i = 0; i < 2; ++i) {
+        place_in(dim, &block->motion[i], point, &place[i]);
+        motion[i] = motion_in_fluid(model, drag, times[i], place[i].r, place[i].v);
+    }
+    place_in(dim, &block->motion[2], point, &middle);
+    const relative_motion halfway = motion_in_fluid(model, drag, at->middle->t, middle.r, middle.v);
+    drag->kernel->inertia_step(place[0].r_x, place[1].r_x, motion[0].w, motion[1].w, drag->added, dp, g);
+    drag->kernel->impulse_of_cable(middle.r_x, halfway.w, drag->added, mean, M);
+    if (drag->wet != FU_ALL_WET) wet_length_over_step(model, drag, place, motion, &halfway, dp, g, mean, on_place);
+    for (int d = 0; d < dim; ++d) rate[d] = dp[d] / at->h;
+    on_particles(model, drag, &halfway, mean, rate, middle.v, weight, left, power);
+    if (power) /* the change of T contains the velocities at both ends; `on_particles` has -rate . U half-way */
+        for (int d = 0; d < dim; ++d)
+            power->external +=
+                weight * rate[d] * (0.5 * (motion[0].w[d] + motion[1].w[d]) - middle.v[d] + halfway.flow.U[d]);
+    for (int d = 0; d < dim; ++d) left[d] -= weight * on_place[d];
+    for (int d = 0; d < dim; ++d) g[d] *= weight;
+}
+
 static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const fu_equations *at,
                              const fu_drag_sums *sums)
 {
@@ -112,36 +155,25 @@ static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const f
     for (int e = 0; e < cable->n_elements; ++e) {
         const int first = cable->first + e * cable->per_node;
         fu_drag_points points;
-        fu_drag_motion motions[3];
-        for (int i = 0; i < 3; ++i)
-            fu_drag_motion_of(cable, states[i]->q + first, states[i]->v + first, 0, &motions[i]);
         fu_drag_points_over(model, drag, e, at->now->q + first, at->next->q + first, &points);
-        for (int k = 0; k < points.n; ++k) {
-            const fu_quadrature_point point = points.at[k];
-            fu_drag_place place[2], middle;
-            relative_motion motion[2];
-            double dp[3], g[3], rate[3], mean[3], M[9], left[3], on_place[3] = {0.0};
-            for (int i = 0; i < 2; ++i) {
-                fu_drag_place_on_axis(&motions[i], &point, &place[i]);
-                motion[i] = motion_in_fluid(model, drag, states[i]->t, place[i].r, place[i].v);
+        for (int from = 0; from < points.n; from += FU_BLOCK_POINTS) {
+            block_step block;
+            fu_points forces[2 * 3];
+            memset(forces, 0, sizeof forces);
+            fu_block_shapes_of(&points, from, cable->coordinates / dim, &block.shapes);
+            for (int i = 0; i < 3; ++i)
+                fu_block_motion_of(cable, &block.shapes, states[i]->q + first, states[i]->v + first, 0,
+                                   &block.motion[i]);
+            for (int p = 0; p < block.shapes.n; ++p) {
+                double left[3], g[3];
+                on_point_in_step(model, drag, at, &block, p, left, g, sums->power);
+                for (int d = 0; d < dim; ++d) {
+                    forces[d][p] = -left[d];
+                    forces[dim + d][p] = g[d];
+                    if (sums->total) sums->total[d] -= left[d];
+                }
             }
-            fu_drag_place_on_axis(&motions[2], &point, &middle);
-            const relative_motion halfway = motion_in_fluid(model, drag, at->middle->t, middle.r, middle.v);
-            drag->kernel->inertia_step(place[0].r_x, place[1].r_x, motion[0].w, motion[1].w, drag->added, dp, g);
-            drag->kernel->impulse_of_cable(middle.r_x, halfway.w, drag->added, mean, M);
-            if (drag->wet != FU_ALL_WET)
-                wet_length_over_step(model, drag, place, motion, &halfway, dp, g, mean, on_place);
-            for (int d = 0; d < dim; ++d) rate[d] = dp[d] / at->h;
-            on_particles(model, drag, &halfway, mean, rate, middle.v, point.weight, left, sums->power);
-            if (sums->power) /* the change of T contains the velocities at both ends; `on_particles` has -rate .
-                                U half-way */
-                for (int d = 0; d < dim; ++d)
-                    sums->power->external +=
-                        point.weight * rate[d] *
-                        (0.5 * (motion[0].w[d] + motion[1].w[d]) - middle.v[d] + halfway.flow.U[d]);
-            for (int d = 0; d < dim; ++d) left[d] -= point.weight * on_place[d];
-            for (int d = 0; d < dim; ++d) g[d] *= point.weight;
-            fu_fluid_on_element(model, drag, first, point, left, g, sums);
+            if (sums->f) fu_block_subtract(dim, &block.shapes, 2, forces, sums->f + first);
         }
     }
 }

@@ -3,16 +3,16 @@
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/attachments.h"
-#include "couplings/fluid/drag.h"
+#include "couplings/fluid/points.h"
 
 #include <string.h>
 
-/* Computes the impulse M w and M at a point of the velocity at->v relative to the fluid; A: axes of the body. */
+/* Computes the impulse M w and M of a body at a point of the velocity at->v relative to the fluid; A: axes of the body.
+ */
 static void impulse(const fu_model *model, const fu_drag *drag, const fu_drag_place *at, const double *A, double p[3],
                     double M[9])
 {
-    if (drag->cable >= 0) drag->kernel->impulse_of_cable(at->r_x, at->v, drag->added, p, M);
-    else drag->kernel->impulse_of_point(A, drag->added, at->v, p, M);
+    drag->kernel->impulse_of_point(A, drag->added, at->v, p, M);
     const double part = fu_wet_part(model, drag, at->r).part;
     for (int i = 0; i < model->dim; ++i) p[i] *= part;
     for (int i = 0; i < model->dim * model->dim; ++i) M[i] *= part;
@@ -29,17 +29,31 @@ static void place_on_body(const fu_model *model, const fu_drag *drag, const doub
     memcpy(at->v, end->v, sizeof at->v);
 }
 
-/* Adds M a to f; the rates at the site are the accelerations. */
-static void add_force(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop,
-                      double *K)
+/* Computes the same of a length of cable, of the wet part, at a block. */
+FU_INLINE void impulse_at(int dim, const fu_drag_block *block, const fu_points *w, fu_points *p, fu_points *M)
 {
-    const int dim = model->dim, n = model->cables[drag->cable].coordinates / dim;
-    double *f = loop->sums->f, p[3], M[9];
-    (void)K;
-    impulse(model, drag, &site->at, 0, p, M);
-    for (int k = 0; k < n; ++k)
-        for (int d = 0; d < dim; ++d) f[site->first + k * dim + d] += site->point.weight * site->point.N[k] * p[d];
+    block->constants->kernel->impulse_of_cable(block->motion.r_x, w, block->constants->added, p, M);
+    for (int i = 0; i < dim; ++i) p[i] *= block->fluid.wet[0];
+    for (int i = 0; i < dim * dim; ++i) M[i] *= block->fluid.wet[0];
 }
+
+/* Adds M a to f; the rates at the block are the accelerations. */
+FU_INLINE void add_force_at(const fu_model *model, const fu_drag *drag, const fu_drag_block *block, fu_drag_loop *loop,
+                            double *K)
+{
+    fu_points p[3], M[9];
+    (void)drag;
+    (void)K;
+    impulse_at(model->dim, block, block->motion.v, p, M);
+    for (int d = 0; d < model->dim; ++d) p[d] *= -block->shapes.weight;
+    fu_block_subtract(model->dim, &block->shapes, 1, p, loop->sums->f + block->first);
+}
+
+static fu_drag_visitor add_force, add_mass, add_energy;
+FU_SIMD_FUNCTION(add_force, add_force_at,
+                 (const fu_model *model, const fu_drag *drag, const fu_drag_block *block, fu_drag_loop *loop,
+                  double *K),
+                 (model, drag, block, loop, K))
 
 void fu_added_mass_force(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a,
                          double *f)
@@ -47,7 +61,7 @@ void fu_added_mass_force(const fu_model *model, const fu_coupling *coupling, con
     const fu_drag *drag = (const fu_drag *)coupling;
     if (drag->cable >= 0) {
         const fu_drag_sums sums = {.f = f};
-        fu_drag_loop loop = {.sums = &sums};
+        fu_drag_loop loop = {.sums = &sums, .is_still = 1};
         fu_drag_visit(model, drag, q, a, 0, add_force, &loop, 0);
         return;
     }
@@ -65,14 +79,20 @@ void fu_added_mass_force(const fu_model *model, const fu_coupling *coupling, con
     fu_add_wrench(model->dim, &end, p, 0, 1.0, f);
 }
 
-static void add_mass(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop,
-                     double *K)
+FU_INLINE void add_mass_at(const fu_model *model, const fu_drag *drag, const fu_drag_block *block, fu_drag_loop *loop,
+                           double *K)
 {
-    const double *N = site->point.N, scale = loop->weights.stiffness * site->point.weight;
-    double p[3], M[9];
-    impulse(model, drag, &site->at, 0, p, M);
-    fu_add_element_product(model->dim, model->cables[drag->cable].coordinates, scale, N, N, M, K);
+    fu_points p[3], M[9];
+    (void)drag;
+    impulse_at(model->dim, block, block->motion.v, p, M);
+    for (int i = 0; i < model->dim * model->dim; ++i) M[i] *= loop->weights.stiffness * block->shapes.weight;
+    fu_block_add_matrix(model->dim, &block->shapes, 1, 1, M, K);
 }
+
+FU_SIMD_FUNCTION(add_mass, add_mass_at,
+                 (const fu_model *model, const fu_drag *drag, const fu_drag_block *block, fu_drag_loop *loop,
+                  double *K),
+                 (model, drag, block, loop, K))
 
 void fu_added_mass_matrix(const fu_model *model, const fu_coupling *coupling, const double *q, double scale,
                           fu_system *system)
@@ -80,7 +100,7 @@ void fu_added_mass_matrix(const fu_model *model, const fu_coupling *coupling, co
     const fu_drag *drag = (const fu_drag *)coupling;
     const int dim = model->dim;
     if (drag->cable >= 0) {
-        fu_drag_loop loop = {.has_matrix = 1, .weights = {.stiffness = scale}};
+        fu_drag_loop loop = {.has_matrix = 1, .is_still = 1, .weights = {.stiffness = scale}};
         fu_drag_visit(model, drag, q, model->zero, 0, add_mass, &loop, system);
         return;
     }
@@ -99,37 +119,40 @@ void fu_added_mass_matrix(const fu_model *model, const fu_coupling *coupling, co
     fu_add_wrench_tangent(model, &end, &end, changes, 0, 0, scale, system);
 }
 
-/* Returns the kinetic energy at a point, J/m or J. */
-static double energy_at(const fu_model *model, const fu_drag *drag, const fu_drag_loop *loop, const double *A,
-                        fu_drag_place at)
+FU_INLINE void add_energy_at(const fu_model *model, const fu_drag *drag, const fu_drag_block *block, fu_drag_loop *loop,
+                             double *K)
 {
-    double p[3], M[9];
-    fu_flow_state flow = {{0.0}, {0.0}, {0.0}};
-    if (loop->past_fluid) fu_flow_at(model, &drag->flow, loop->t, at.r, &flow);
-    for (int d = 0; d < model->dim; ++d) at.v[d] -= flow.U[d];
-    impulse(model, drag, &at, A, p, M);
-    return 0.5 * fu_dot(model->dim, p, at.v);
+    fu_points w[3] = {{0.0}}, p[3], M[9], energy = {0.0};
+    (void)drag;
+    (void)K;
+    for (int d = 0; d < model->dim; ++d) w[d] = block->motion.v[d] - block->fluid.U[d];
+    impulse_at(model->dim, block, w, p, M);
+    for (int d = 0; d < model->dim; ++d) energy += 0.5 * block->shapes.weight * p[d] * w[d];
+    loop->energy += fu_block_sum(&energy);
 }
 
-static void add_energy(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop,
-                       double *K)
-{
-    (void)K;
-    loop->energy += site->point.weight * energy_at(model, drag, loop, 0, site->at);
-}
+FU_SIMD_FUNCTION(add_energy, add_energy_at,
+                 (const fu_model *model, const fu_drag *drag, const fu_drag_block *block, fu_drag_loop *loop,
+                  double *K),
+                 (model, drag, block, loop, K))
 
 double fu_added_mass_kinetic_energy(const fu_model *model, const fu_coupling *coupling, double t, const double *q,
                                     const double *v, int past_fluid)
 {
     const fu_drag *drag = (const fu_drag *)coupling;
-    fu_drag_loop loop = {.t = t, .past_fluid = past_fluid};
     if (drag->cable >= 0) {
+        fu_drag_loop loop = {.t = t, .is_still = !past_fluid};
         fu_drag_visit(model, drag, q, v, 0, add_energy, &loop, 0);
         return loop.energy;
     }
     if (drag->on.kernel) return fu_span_added_mass_kinetic_energy(model, drag, t, q, v, past_fluid);
+    double p[3], M[9];
     fu_attachment_state end;
     fu_drag_place at;
+    fu_flow_state flow = {{0.0}, {0.0}, {0.0}};
     place_on_body(model, drag, q, v, &end, &at);
-    return energy_at(model, drag, &loop, end.A, at);
+    if (past_fluid) fu_flow_at(model, &drag->flow, t, at.r, &flow);
+    for (int d = 0; d < model->dim; ++d) at.v[d] -= flow.U[d];
+    impulse(model, drag, &at, end.A, p, M);
+    return 0.5 * fu_dot(model->dim, p, at.v);
 }

@@ -13,41 +13,21 @@
 
 #include <string.h>
 
-/* Adds the forces of drag and buoyancy at a point of a cable. */
-static void add_at(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop, double *K)
-{
-    const fu_drag_sums *sums = loop->sums;
-    const fu_quadrature_point point = site->point;
-    const int dim = model->dim, n = model->cables[drag->cable].coordinates / dim;
-    const double share = point.weight * model->load_fraction;
-    fu_drag_action a;
-    double force[3];
-    (void)K;
-    fu_drag_act(model, drag, loop->t, &site->at, 0, &a);
-    fu_drag_whole_force(model, &a, force);
-    if (sums->power) fu_drag_add_powers(model, &site->at, &a, point.weight, sums->power);
-    if (sums->power && point.N_chord) sums->power->external += share * fu_section_power(&site->at, &a);
-    if (sums->f && point.N_chord) fu_section_forces(&a, point, share, n, sums->f + site->first);
-    for (int d = 0; d < dim; ++d) {
-        const double part = point.weight * force[d];
-        if (sums->total) sums->total[d] += part;
-        for (int k = 0; sums->f && k < n; ++k) sums->f[site->first + k * dim + d] -= point.N[k] * part;
-    }
-}
-
-static void densities_at(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop,
+static void densities_at(const fu_model *model, const fu_drag *drag, const fu_drag_block *block, fu_drag_loop *loop,
                          double *K)
 {
-    double *out = loop->rows + (long)loop->n_rows++ * FU_DRAG_DENSITIES, force[3] = {0.0};
-    fu_drag_action a;
+    fu_block_action a;
     (void)K;
-    fu_drag_act(model, drag, loop->t, &site->at, 0, &a);
-    fu_drag_whole_force(model, &a, force);
-    out[0] = site->element;
-    out[1] = site->part;
-    out[2] = site->x;
-    out[3] = site->point.weight;
-    memcpy(out + 4, force, sizeof force);
+    fu_block_act(model, drag, block, &a);
+    for (int p = 0; p < block->shapes.n; ++p) {
+        double *out = loop->rows + (long)loop->n_rows++ * FU_DRAG_DENSITIES;
+        out[0] = block->element;
+        out[1] = block->points->part[block->from + p];
+        out[2] = block->points->x[block->from + p];
+        out[3] = block->shapes.weight[p];
+        out[4] = out[5] = out[6] = 0.0;
+        for (int d = 0; d < model->dim; ++d) out[4 + d] = model->load_fraction * (a.f[d][p] + a.buoyancy[d][p]);
+    }
 }
 
 int fu_drag_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
@@ -55,37 +35,6 @@ int fu_drag_densities(const fu_model *model, const fu_coupling *coupling, const 
     fu_drag_loop loop = {.t = state->t, .rows = out};
     fu_drag_visit(model, (const fu_drag *)coupling, state->q, state->v, 0, densities_at, &loop, 0);
     return loop.n_rows;
-}
-
-/* Adds the derivatives of the forces at a point to the matrix of the element. */
-static void matrix_at(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop,
-                      double *K)
-{
-    const fu_quadrature_point point = site->point;
-    const int dim = model->dim, all = model->cables[drag->cable].coordinates;
-    const double scale = -loop->weights.stiffness * model->load_fraction * point.weight;
-    double gradient[9];
-    fu_drag_action a;
-    fu_drag_act(model, drag, loop->t, &site->at, 0, &a);
-    fu_drag_by_place(dim, &a, gradient);
-    for (int i = 0; i < dim * dim; ++i) gradient[i] -= loop->weights.rate * a.by_w[i];
-    fu_add_field_matrix(dim, all, scale, point.N, &(fu_field_change){a.by_slope, point.N_x, gradient, point.N}, K);
-    if (point.N_chord) fu_section_matrix(&a, point, scale, loop->weights.rate, all, K);
-}
-
-/* Adds all forces of the fluid at a point of a cable, with those of its inertia. */
-static void add_all_at(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop,
-                       double *K)
-{
-    add_at(model, drag, site, loop, K);
-    fu_added_mass_at(model, drag, site, loop, K);
-}
-
-static void matrix_of_all_at(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop,
-                             double *K)
-{
-    matrix_at(model, drag, site, loop, K);
-    fu_added_mass_tangent_at(model, drag, site, loop, K);
 }
 
 /* Computes a body's point, and its motion with the coordinates; over a step that conserves energy, the mean position
@@ -156,8 +105,8 @@ static void matrix_of_body(const fu_model *model, const fu_drag *drag, const fu_
 static void add(const fu_model *model, const fu_drag *drag, const fu_state *state, const fu_equations *step,
                 const fu_drag_sums *sums)
 {
-    fu_drag_loop loop = {.t = state->t, .sums = sums};
-    if (drag->cable >= 0) fu_drag_visit(model, drag, state->q, state->v, 0, add_at, &loop, 0);
+    fu_drag_loop loop = {.t = state->t, .sums = sums, .has_drag = 1};
+    if (drag->cable >= 0) fu_drag_visit(model, drag, state->q, state->v, 0, fu_block_forces, &loop, 0);
     else if (drag->on.kernel) fu_add_span_drag(model, drag, state, sums);
     else on_body(model, drag, state->t, state, step, sums);
 }
@@ -168,8 +117,8 @@ static void add_all(const fu_model *model, const fu_coupling *coupling, const fu
 {
     const fu_drag *drag = (const fu_drag *)coupling;
     if (drag->cable >= 0 && coupling->has_inertia) {
-        fu_drag_loop loop = {.t = state->t, .sums = sums};
-        fu_drag_visit(model, drag, state->q, state->v, a, add_all_at, &loop, 0);
+        fu_drag_loop loop = {.t = state->t, .sums = sums, .has_drag = 1, .has_inertia = 1};
+        fu_drag_visit(model, drag, state->q, state->v, a, fu_block_forces, &loop, 0);
         return;
     }
     add(model, drag, state, 0, sums);
@@ -212,9 +161,9 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
     const fu_drag *drag = (const fu_drag *)coupling;
     const double *accelerations = weights.inertia != 0.0 ? a : 0;
     if (drag->cable >= 0) {
-        fu_drag_loop loop = {.t = state->t, .has_matrix = 1, .weights = weights};
-        fu_drag_visit(model, drag, state->q, state->v, accelerations,
-                      coupling->has_inertia ? matrix_of_all_at : matrix_at, &loop, system);
+        fu_drag_loop loop = {
+            .t = state->t, .has_drag = 1, .has_inertia = coupling->has_inertia, .has_matrix = 1, .weights = weights};
+        fu_drag_visit(model, drag, state->q, state->v, accelerations, fu_block_tangent, &loop, system);
         return;
     }
     if (drag->on.kernel) fu_add_span_drag_matrix(model, drag, state, weights, system);

@@ -4,6 +4,7 @@
 #define FUNICULAR_COUPLINGS_FLUID_DRAG_H
 
 #include "base/common.h"
+#include "bodies/cables.h"
 #include "couplings/common/attachments.h"
 #include "couplings/common/coupling.h"
 #include "couplings/common/span_elements.h"
@@ -98,38 +99,18 @@ typedef struct {
     double part, slope, curvature;
 } fu_wetness;
 
-/* A point of a cable's axis, or of a body, in the fluid. r_x, its rate, and `a`, acceleration, of a cable only; the
- * director along the chord and its rate of a beam's foil only. Sums over shape functions fill whole blocks of numbers:
- * r to a, r_x and its rate, chord and its rate. */
-enum { FU_DRAG_MOTION = 12, FU_DRAG_SLOPES = 8 };
+/* A point of a body, or of the material in a span of a rope, in the fluid. r_x, the slope, and `a`, acceleration, of a
+ * span only. */
 typedef struct {
-    union {
-        struct {
-            double r[3], v[3], a[3];
-        };
-        double by_N[FU_DRAG_MOTION];
-    };
-    union {
-        struct {
-            double r_x[3], r_x_rate[3];
-        };
-        double by_N_x[FU_DRAG_SLOPES];
-    };
-    union {
-        struct {
-            double chord[3], chord_rate[3];
-        };
-        double by_N_chord[FU_DRAG_SLOPES];
-    };
+    double r[3], v[3], a[3], r_x[3];
 } fu_drag_place;
 
 /* Forces of the fluid at a point: the fluid's velocity with derivatives, and that relative to the point; drag and lift
  * with their derivatives, and buoyancy, all of the wet part; by_wet: derivative of their sum by position through the
- * wet part. of_section: of a beam's foil the forces on r, r_x and chord, with their derivatives by r_x, chord and w; f
- * includes the first. */
+ * wet part. */
 typedef struct {
     fu_flow_state flow;
-    double w[3], f[3], buoyancy[3], by_wet[9], by_slope[9], by_w[9], by_turn[9], of_section[9], section_by[81];
+    double w[3], f[3], buoyancy[3], by_wet[9], by_slope[9], by_w[9], by_turn[9];
 } fu_drag_action;
 
 /* Dissipated power, and external power by the fluid, W. */
@@ -149,28 +130,58 @@ static inline int fu_drag_on_section(const fu_drag *drag)
     return drag->cable >= 0 && drag->is_foil;
 }
 
-/* A point of quadrature on an element whose first dof is `first`: number of its part between two cuts, and position in
- * the element, m. */
+/* Along a cable points of quadrature of an element are evaluated side by side, FU_BLOCK_POINTS in a block: a number of
+ * each in fu_points. Points beyond the n of a block repeat the last one with the weight zero. */
+enum { FU_MAX_SHAPES = FU_MAX_COORDINATES / 2 };
 typedef struct {
-    int element, first, part;
-    double x;
-    fu_quadrature_point point;
-    fu_drag_place at;
-} fu_drag_site;
+    int n, shapes, has_chord;
+    fu_points weight, N[FU_MAX_SHAPES], N_x[FU_MAX_SHAPES], N_chord[FU_MAX_SHAPES];
+} fu_block_shapes;
 
-/* Arguments and results of a loop over points: a visitor uses those of its purpose. rows: the next row of densities;
- * energy: a kinetic energy, J, relative to the fluid or in a fluid at rest. */
+/* Motion of the points of a block; chord and its rate of a beam's foil only. */
+typedef struct {
+    fu_points r[3], v[3], a[3], r_x[3], r_x_rate[3], chord[3], chord_rate[3];
+} fu_block_motion;
+
+/* The fluid at the points of a block: as fu_flow_state and fu_wetness. */
+typedef struct {
+    fu_points U[3], rate[3], gradient[9], wet[3];
+} fu_block_fluid;
+
+/* Forces at the points of a block, as fu_drag_action. of_section: of a beam's foil the forces on r, r_x and chord, with
+ * their derivatives by r_x, chord and w; f includes the first. */
+typedef struct {
+    fu_points w[3], f[3], buoyancy[3], by_wet[9], by_slope[9], by_w[9], of_section[9], section_by[81];
+} fu_block_action;
+
+/* Kernels at blocks of points, with their arguments that are the same at all points. */
+typedef struct {
+    const fu_drag_blocks *kernel;
+    fu_points coefficients[3], lift[2], section[3], added[2], displaced, up[3];
+} fu_block_constants;
+
+/* A block of points from the k-th of an element on, whose first dof is `first`. */
+typedef struct {
+    int element, first, from;
+    const fu_drag_points *points;
+    const fu_block_constants *constants;
+    fu_block_shapes shapes;
+    fu_block_motion motion;
+    fu_block_fluid fluid;
+} fu_drag_block;
+
+/* Arguments and results of a loop over blocks: a visitor uses those of its purpose. has_drag, has_inertia: forces that
+ * are added; rows: the next row of densities; energy: a kinetic energy, J. */
 typedef struct {
     double t;
     const fu_drag_sums *sums;
-    int has_matrix;
+    int has_drag, has_inertia, has_matrix, is_still; /* is_still: the velocity of the fluid is taken as zero */
     fu_weights weights;
     double *rows;
     int n_rows;
     double energy;
-    int past_fluid;
 } fu_drag_loop;
-typedef void fu_drag_visitor(const fu_model *model, const fu_drag *drag, const fu_drag_site *site, fu_drag_loop *loop,
+typedef void fu_drag_visitor(const fu_model *model, const fu_drag *drag, const fu_drag_block *block, fu_drag_loop *loop,
                              double *K);
 
 /* couplings/fluid/quadrature.c */
@@ -178,23 +189,38 @@ fu_quadrature_point fu_drag_point(const fu_drag *drag, int n, int element, int p
 /* Return the number of nodes of the cable or the span, and the place of one. */
 int fu_drag_nodes(const fu_model *model, const fu_drag *drag);
 const double *fu_drag_node(const fu_model *model, const fu_drag *drag, int k, const double *q);
-/* The motion of an element of a cable, a row for each nodal vector: coordinates, rates and accelerations (zero
- * without); coordinates and rates relative to the first node, for slopes: they do not depend on its position, and no
- * digits are lost far from the origin. */
-typedef struct {
-    int n;
-    double by_N[FU_MAX_COORDINATES / 2][FU_DRAG_MOTION], by_N_x[FU_MAX_COORDINATES / 2][FU_DRAG_SLOPES];
-} fu_drag_motion;
-void fu_drag_motion_of(const fu_cable *cable, const double *e, const double *v, const double *a, fu_drag_motion *out);
-/* Computes the motion of a point of quadrature on an element; that of the chord if the point has its shape functions.
- */
-void fu_drag_place_on_axis(const fu_drag_motion *of, const fu_quadrature_point *point, fu_drag_place *at);
 
-/* couplings/fluid/point_loop.c: calls `visit` at each point of a cable with the coordinates q, rates v and
+/* couplings/fluid/point_block.c: the shape functions of a block of points from the k-th on; their motion by the
+ * coordinates e, rates v and accelerations a (null: zero) of the element; place and velocity of one of them, with zero
+ * beyond the dimension. Slopes are sums over coordinates relative to the first node: they do not depend on its
+ * position, and no digits are lost far from the origin. */
+void fu_block_shapes_of(const fu_drag_points *points, int from, int n_shapes, fu_block_shapes *out);
+void fu_block_motion_of(const fu_cable *cable, const fu_block_shapes *shapes, const double *e, const double *v,
+                        const double *a, fu_block_motion *out);
+void fu_block_vector(int dim, const fu_points *of, int point, double out[3]);
+
+/* couplings/fluid/point_loop.c: calls `visit` with each block of points of a cable with the coordinates q, rates v and
  * accelerations a (null: none). K: matrix of the element, which is added to the system (or to none, null) after its
  * points if loop->has_matrix. */
 void fu_drag_visit(const fu_model *model, const fu_drag *drag, const double *q, const double *v, const double *a,
                    fu_drag_visitor *visit, fu_drag_loop *loop, fu_system *system);
+
+/* couplings/fluid/block_force.c: drag, lift and buoyancy at a block, without derivatives; the force of the inertia of
+ * the fluid on particles, on the left side of the equations of motion, and that on the slope. Adds all forces of the
+ * fluid at a block that the loop has, or their derivatives to the matrix of the element. */
+void fu_block_act(const fu_model *model, const fu_drag *drag, const fu_drag_block *block, fu_block_action *out);
+void fu_block_inertia(const fu_drag_block *block, fu_points left[3], fu_points on_slope[3]);
+fu_drag_visitor fu_block_forces, fu_block_tangent;
+
+/* couplings/fluid/block_sums.c: sums over the points of a block. Subtract from f the forces (each of dim components) on
+ * up to FU_BLOCK_FIELDS fields, place, slope and chord, times the rows of their shape functions; add to K the
+ * derivatives of the forces on some of them, by some of them (rows x columns x dim x dim). Weights are in the forces.
+ */
+#define FU_BLOCK_FIELDS 3
+double fu_block_sum(const fu_points *x);
+void fu_block_subtract(int dim, const fu_block_shapes *shapes, int n_fields, const fu_points *forces, double *f);
+void fu_block_add_matrix(int dim, const fu_block_shapes *shapes, int n_rows, int n_columns, const fu_points *by,
+                         double *K);
 
 /* couplings/fluid/wetness.c: the wet part at a height; the height of a point, m; the points of quadrature of an element
  * at the coordinates e, on a span without shape functions, and over a step between two coordinates. */
@@ -239,19 +265,25 @@ void fu_span_added_mass_matrix(const fu_model *model, const fu_drag *drag, const
 double fu_span_added_mass_kinetic_energy(const fu_model *model, const fu_drag *drag, double t, const double *q,
                                          const double *v, int past_fluid);
 
-/* couplings/fluid/section_moment.c: forces on slope and chord of a beam's foil at a point of quadrature, their power,
- * and their derivatives. */
-double fu_section_power(const fu_drag_place *at, const fu_drag_action *action);
-void fu_section_forces(const fu_drag_action *action, fu_quadrature_point point, double part, int n, double *f);
-void fu_section_matrix(const fu_drag_action *action, fu_quadrature_point point, double scale, double rate, int all,
-                       double *K);
+/* couplings/fluid/drag_force.c: computes the first n of the coefficients of drag, lift and moment, each with its
+ * derivative by the angle of attack, the angle about the span from the chord to the flow w. */
+void fu_drag_polar(int dim, const fu_drag *drag, const double *chord, const double *span, const double *w, int n,
+                   double *coefficients);
+
+/* couplings/fluid/section_moment.c: add drag, lift and moment on a beam's section at a block, with their derivatives in
+ * those of the force on the axis if with_derivatives is nonzero; the power of the forces on slope and chord, W/m.
+ * Subtracts their derivatives, and that of the force on the axis by the chord, times `scale`, from the blocks by place,
+ * slope and chord; rate: derivative of velocities by positions. */
+void fu_section_act(const fu_drag *drag, const fu_drag_block *block, int with_derivatives, fu_block_action *out);
+void fu_section_power(const fu_block_motion *at, const fu_block_action *action, fu_points *power);
+void fu_section_derivatives(const fu_block_fluid *fluid, const fu_block_action *action, const fu_points *scale,
+                            double rate, fu_points *by);
 
 /* flags of a state: one of the table, one of each event function of surfaces */
 #define FU_DRAG_FLAGS (1 + FU_SURFACE_EVENT_FUNCTIONS)
 
-/* couplings/fluid/added_mass.c: inertial forces of the fluid at a point of a cable, and their derivatives; on spans and
- * bodies with the accelerations `a` of the dofs (null: zero). */
-fu_drag_visitor fu_added_mass_at, fu_added_mass_tangent_at;
+/* couplings/fluid/added_mass.c: inertial forces of the fluid on spans and bodies with the accelerations `a` of the dofs
+ * (null: zero). */
 void fu_added_mass_forces(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
                           const fu_drag_sums *sums);
 void fu_added_mass_tangent(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
@@ -261,9 +293,6 @@ void fu_added_mass_tangent(const fu_model *model, const fu_drag *drag, const fu_
  * (dim x dim of 9). */
 #define FU_ADDED_MASS_DENSITIES 15
 void fu_added_mass_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
-/* Adds a force on the particles and one on the slope, at a point of quadrature, to the forces on an element's dofs. */
-void fu_fluid_on_element(const fu_model *model, const fu_drag *drag, int first, fu_quadrature_point point,
-                         const double *left, const double *on_slope, const fu_drag_sums *sums);
 
 /* couplings/fluid/added_mass_matrix.c */
 void fu_added_mass_force(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a,

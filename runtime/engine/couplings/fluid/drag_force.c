@@ -1,4 +1,4 @@
-/* Forces of a fluid at a point of a cable or of a body: drag and lift by the relative velocity
+/* Forces of a fluid at a point of a span of a rope or of a body: drag and lift by the relative velocity
  * (derive/couplings/drag.py), with their derivatives. */
 #include "bodies/model.h"
 #include "couplings/fluid/drag.h"
@@ -22,10 +22,8 @@ static void cross(int dim, const double *a, const double *b, double out[3])
     fu_cross(a, b, out);
 }
 
-/* Computes the first n of the coefficients of drag, lift and moment, each with its derivative by the angle of attack,
- * the angle about the span from the chord to the flow w. */
-static void coefficients_of(int dim, const fu_drag *drag, const double *chord, const double *span, const double *w,
-                            int n, double *coefficients)
+void fu_drag_polar(int dim, const fu_drag *drag, const double *chord, const double *span, const double *w, int n,
+                   double *coefficients)
 {
     const double *of[3] = {drag->polar_drag, drag->polar_lift, drag->polar_moment};
     memset(coefficients, 0, sizeof(double) * 2 * (size_t)n);
@@ -49,7 +47,7 @@ static void add_foil(int dim, const fu_drag *drag, const double *A, fu_drag_acti
         chord[d] = fu_dot(dim, A + d * dim, drag->chord);
         if (dim == 3) span[d] = fu_dot(dim, A + d * dim, drag->span);
     }
-    coefficients_of(dim, drag, chord, span, out->w, 2, coefficients);
+    fu_drag_polar(dim, drag, chord, span, out->w, 2, coefficients);
     drag->kernel->on_foil(out->w, span, drag->foil, coefficients, f, by_w);
     add_to(dim, f, out->f);
     add_to(dim * dim, by_w, out->by_w);
@@ -69,23 +67,6 @@ static void add_lift(const fu_drag *drag, const fu_drag_place *at, fu_drag_actio
     add_to(3, f, out->f);
     add_to(9, by_slope, out->by_slope);
     add_to(9, by_w, out->by_w);
-}
-
-/* Adds drag, lift and moment on a beam's section. */
-static void add_section(const fu_drag *drag, const fu_drag_place *at, fu_drag_action *out)
-{
-    const double inverse = 1.0 / sqrt(fu_dot(3, at->r_x, at->r_x));
-    double i[3], chord[3], polar[6];
-    for (int d = 0; d < 3; ++d) i[d] = inverse * at->r_x[d];
-    const double along = fu_dot(3, i, at->chord);
-    for (int d = 0; d < 3; ++d) chord[d] = at->chord[d] - along * i[d];
-    coefficients_of(3, drag, chord, i, out->w, 3, polar);
-    drag->kernel->on_section(at->r_x, at->chord, out->w, drag->section, polar, out->of_section, out->section_by);
-    add_to(3, out->of_section, out->f);
-    for (int d = 0; d < 3; ++d) {
-        add_to(3, out->section_by + 9 * d, out->by_slope + 3 * d);
-        add_to(3, out->section_by + 9 * d + 6, out->by_w + 3 * d);
-    }
 }
 
 static void scale(int n, double by, double *x)
@@ -113,12 +94,11 @@ void fu_drag_act(const fu_model *model, const fu_drag *drag, double t, const fu_
 {
     fu_flow_at(model, &drag->flow, t, at->r, &out->flow);
     for (int d = 0; d < model->dim; ++d) out->w[d] = out->flow.U[d] - at->v[d];
-    if (drag->cable >= 0 || drag->on.kernel)
+    if (drag->on.kernel)
         drag->kernel->along_cable(at->r_x, out->w, drag->coefficients, out->f, out->by_slope, out->by_w);
     else drag->kernel->on_point(out->w, drag->coefficients, out->f, out->by_w);
     if (drag->lift[0] != 0.0) add_lift(drag, at, out);
-    if (fu_drag_on_section(drag)) add_section(drag, at, out);
-    else if (drag->is_foil) add_foil(model->dim, drag, A, out);
+    if (drag->is_foil) add_foil(model->dim, drag, A, out);
     memcpy(out->buoyancy, drag->buoyancy, sizeof out->buoyancy);
     if (drag->wet == FU_ALL_WET) memset(out->by_wet, 0, sizeof out->by_wet);
     else take_wet_part(model, drag, at, out);

@@ -1,30 +1,100 @@
-/* The loop over all points of quadrature of a cable in a fluid. */
+/* The loop over all points of quadrature of a cable in a fluid, in blocks, with the fluid there. */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
-#include "couplings/fluid/drag.h"
+#include "couplings/fluid/points.h"
 
 #include <string.h>
+
+static void broadcast(int n, const double *x, fu_points *out)
+{
+    for (int i = 0; i < n; ++i) out[i] = (fu_points){0.0} + x[i];
+}
+
+static fu_block_constants constants_of(const fu_drag *drag)
+{
+    fu_block_constants out = {.kernel = fu_drag_blocks_of(drag->kernel->name)};
+    broadcast(3, drag->coefficients, out.coefficients);
+    broadcast(2, drag->lift, out.lift);
+    broadcast(3, drag->section, out.section);
+    broadcast(2, drag->added, out.added);
+    broadcast(1, &drag->displaced, &out.displaced);
+    broadcast(3, drag->flow.up, out.up);
+    return out;
+}
+
+/* Returns whether the velocity of a fluid is the same everywhere. */
+static int is_uniform(const fu_flow *flow)
+{
+    return !flow->degree && flow->profile == FU_UNIFORM;
+}
+
+/* Takes the fluid at one point of a block from the p-th on. */
+static void fluid_from(const fu_model *model, const fu_drag *drag, double t, int p, const fu_block_motion *motion,
+                       fu_block_fluid *out)
+{
+    double r[3];
+    fu_flow_state flow;
+    fu_block_vector(model->dim, motion->r, p, r);
+    fu_flow_at(model, &drag->flow, t, r, &flow);
+    for (; p < FU_BLOCK_POINTS; ++p) {
+        for (int d = 0; d < model->dim; ++d) {
+            out->U[d][p] = flow.U[d];
+            out->rate[d][p] = flow.rate[d];
+        }
+        for (int i = 0; i < model->dim * model->dim; ++i) out->gradient[i][p] = flow.gradient[i];
+    }
+}
+
+static void wet_part_from(const fu_model *model, const fu_drag *drag, int p, const fu_block_motion *motion,
+                          fu_block_fluid *out)
+{
+    double r[3];
+    fu_block_vector(model->dim, motion->r, p, r);
+    const fu_wetness wet = fu_wet_part(model, drag, r);
+    for (; p < FU_BLOCK_POINTS; ++p) {
+        out->wet[0][p] = wet.part;
+        out->wet[1][p] = wet.slope;
+        out->wet[2][p] = wet.curvature;
+    }
+}
+
+/* Computes the fluid at a block; what is the same at all points only at the first block. */
+static void fluid_at(const fu_model *model, const fu_drag *drag, const fu_drag_loop *loop, int is_first,
+                     const fu_block_shapes *shapes, const fu_block_motion *motion, fu_block_fluid *out)
+{
+    const int uniform = loop->is_still || is_uniform(&drag->flow), all_wet = drag->wet == FU_ALL_WET;
+    if (is_first && loop->is_still) memset(out, 0, sizeof *out);
+    for (int p = 0; p < shapes->n && !loop->is_still && (!uniform || (is_first && p == 0)); ++p)
+        fluid_from(model, drag, loop->t, p, motion, out);
+    for (int p = 0; p < shapes->n && (!all_wet || (is_first && p == 0)); ++p)
+        wet_part_from(model, drag, p, motion, out);
+}
 
 void fu_drag_visit(const fu_model *model, const fu_drag *drag, const double *q, const double *v, const double *a,
                    fu_drag_visitor *visit, fu_drag_loop *loop, fu_system *system)
 {
     const fu_cable *cable = &model->cables[drag->cable];
-    const int all = cable->coordinates;
+    const int all = cable->coordinates, n_shapes = all / model->dim;
+    const int points_alike = !drag->stride && drag->wet == FU_ALL_WET; /* of all elements */
+    const fu_block_constants constants = constants_of(drag);
+    int is_first = 1;
     double K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
+    fu_drag_points points;
+    fu_drag_block block = {.points = &points, .constants = &constants};
     for (int e = 0; e < cable->n_elements; ++e) {
-        fu_drag_points points;
-        fu_drag_site site = {.element = e, .first = cable->first + e * cable->per_node};
-        fu_drag_motion motion;
-        fu_drag_points_on(model, drag, e, q + site.first, &points);
-        fu_drag_motion_of(cable, q + site.first, v + site.first, a ? a + site.first : 0, &motion);
+        block.element = e;
+        block.first = cable->first + e * cable->per_node;
+        if (e == 0 || !points_alike) fu_drag_points_on(model, drag, e, q + block.first, &points);
         if (loop->has_matrix) memset(K, 0, sizeof(double) * (size_t)(all * all));
-        for (int g = 0; g < points.n; ++g) {
-            site.part = points.part[g];
-            site.x = points.x[g];
-            site.point = points.at[g];
-            fu_drag_place_on_axis(&motion, &site.point, &site.at);
-            visit(model, drag, &site, loop, K);
+        for (block.from = 0; block.from < points.n; block.from += FU_BLOCK_POINTS) {
+            if (is_first || !points_alike || points.n > FU_BLOCK_POINTS)
+                fu_block_shapes_of(&points, block.from, n_shapes, &block.shapes);
+            fu_block_motion_of(cable, &block.shapes, q + block.first, v + block.first, a ? a + block.first : 0,
+                               &block.motion);
+            fluid_at(model, drag, loop, is_first, &block.shapes, &block.motion, &block.fluid);
+            is_first = 0;
+            visit(model, drag, &block, loop, K);
         }
-        if (loop->has_matrix) fu_add_element_matrix(model, site.first, all, K, system);
+        if (loop->has_matrix) fu_add_element_matrix(model, block.first, all, K, system);
     }
 }

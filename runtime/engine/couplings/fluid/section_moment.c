@@ -1,51 +1,62 @@
 /* Forces of a fluid on slope and chord of a beam by the moment on its section (derive/couplings/section_flow.py). The
- * force on its axis is that of any cable, in couplings/fluid/drag.c. */
+ * force on its axis is that of any cable, in couplings/fluid/block_force.c. */
 #include "bodies/cables.h"
-#include "couplings/fluid/drag.h"
+#include "couplings/fluid/points.h"
 
-#include <string.h>
+#include <math.h>
 
-/* Returns the power per length of the forces on slope and chord, W/m. */
-double fu_section_power(const fu_drag_place *at, const fu_drag_action *action)
+/* Computes the coefficients by the angle of attack at one point of a block. */
+static void polar_at(const fu_drag *drag, const fu_drag_block *block, const fu_points *flow, int point, double polar[6])
 {
-    return fu_dot(3, action->of_section + 3, at->r_x_rate) + fu_dot(3, action->of_section + 6, at->chord_rate);
+    double i[3], chord[3], w[3];
+    fu_block_vector(3, block->motion.r_x, point, i);
+    fu_block_vector(3, block->motion.chord, point, chord);
+    fu_block_vector(3, flow, point, w);
+    const double inverse = 1.0 / sqrt(fu_dot(3, i, i));
+    for (int d = 0; d < 3; ++d) i[d] *= inverse;
+    const double along = fu_dot(3, i, chord);
+    for (int d = 0; d < 3; ++d) chord[d] -= along * i[d];
+    fu_drag_polar(3, drag, chord, i, w, 3, polar);
 }
 
-/* Subtracts `part` times these forces from f, the left side of the equations of motion of an element of n shape
- * functions. */
-void fu_section_forces(const fu_drag_action *action, fu_quadrature_point point, double part, int n, double *f)
+void fu_section_act(const fu_drag *drag, const fu_drag_block *block, int with_derivatives, fu_block_action *out)
 {
-    for (int k = 0; k < n; ++k)
-        for (int d = 0; d < 3; ++d)
-            f[k * 3 + d] -=
-                part * (point.N_x[k] * action->of_section[3 + d] + point.N_chord[k] * action->of_section[6 + d]);
+    const fu_block_constants *c = block->constants;
+    fu_points polar[6];
+    for (int p = 0; p < FU_BLOCK_POINTS; ++p) {
+        double at_point[6];
+        polar_at(drag, block, out->w, p, at_point);
+        for (int k = 0; k < 6; ++k) polar[k][p] = at_point[k];
+    }
+    c->kernel->on_section(block->motion.r_x, block->motion.chord, out->w, c->section, polar, out->of_section,
+                          out->section_by);
+    for (int d = 0; d < 3; ++d) {
+        out->f[d] += out->of_section[d];
+        for (int k = 0; k < 3 && with_derivatives; ++k) {
+            out->by_slope[3 * d + k] += out->section_by[9 * d + k];
+            out->by_w[3 * d + k] += out->section_by[9 * d + 6 + k];
+        }
+    }
 }
 
-/* Computes the derivative of one of the three forces by one of r_x, chord and w. */
-static void block(const fu_drag_action *action, int force, int by, double out[9])
+void fu_section_power(const fu_block_motion *at, const fu_block_action *action, fu_points *power)
 {
     for (int d = 0; d < 3; ++d)
-        memcpy(out + 3 * d, action->section_by + 9 * (3 * force + d) + 3 * by, sizeof(double[3]));
+        *power += action->of_section[3 + d] * at->r_x_rate[d] + action->of_section[6 + d] * at->chord_rate[d];
 }
 
-/* Adds to K (all x all) `scale` times their derivatives, and that of the force on the axis by the chord; rate:
- * derivative of velocities by positions. */
-void fu_section_matrix(const fu_drag_action *action, fu_quadrature_point point, double scale, double rate, int all,
-                       double *K)
+void fu_section_derivatives(const fu_block_fluid *fluid, const fu_block_action *action, const fu_points *scale,
+                            double rate, fu_points *by)
 {
-    const double *shapes[3] = {point.N, point.N_x, point.N_chord};
-    double by[9], by_w[9], by_place[9];
-    for (int force = 0; force < 3; ++force) {
-        block(action, force, 1, by);
-        fu_add_element_product(3, all, scale, shapes[force], point.N_chord, by, K);
-        if (force == 0) continue;
-        block(action, force, 0, by);
-        block(action, force, 2, by_w);
+    for (int force = 0; force < 3; ++force)
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j) {
-                by_place[3 * i + j] = -rate * by_w[3 * i + j];
-                for (int k = 0; k < 3; ++k) by_place[3 * i + j] += by_w[3 * i + k] * action->flow.gradient[3 * k + j];
+                const fu_points *row = action->section_by + 9 * (3 * force + i);
+                fu_points *out = by + 27 * force + 3 * i + j, by_place = -rate * row[6 + j];
+                out[18] -= *scale * row[3 + j];
+                if (force == 0) continue; /* by slope and place among those of any cable */
+                for (int k = 0; k < 3; ++k) by_place += row[6 + k] * fluid->gradient[3 * k + j];
+                out[0] -= *scale * by_place;
+                out[9] -= *scale * row[j];
             }
-        fu_add_field_matrix(3, all, scale, shapes[force], &(fu_field_change){by, point.N_x, by_place, point.N}, K);
-    }
 }
