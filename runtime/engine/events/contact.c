@@ -19,6 +19,11 @@ static double deepest(const fu_model *model, const fu_contact *contact, const fu
     fu_attachment_state on;
     fu_surface_at(model, &contact->surface, state, &on);
     for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+        fu_contact_heights heights;
+        if (fu_contact_heights_of(model, contact, &on, state, e, &heights)) {
+            depth = fmax(depth, heights.deepest);
+            continue;
+        }
         if (!fu_contact_may_be_active(model, contact, &on, state, e, -depth)) continue;
         for (int k = 0; k < contact->n_points; ++k) {
             fu_contact_point point;

@@ -48,12 +48,12 @@ static void matrix(const fu_model *model, const fu_contact *contact, const fu_st
     fu_surface_at(model, &contact->surface, state, &on);
     for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
         int in_contact = 0;
-        if (!fu_contact_may_be_active(model, contact, &on, state, e, 0.0)) continue;
+        fu_contact_heights heights;
+        if (!fu_contact_begin_element(model, contact, &on, state, e, &heights)) continue;
         const int n = contact->cable >= 0 ? model->cables[contact->cable].coordinates : 0;
         for (int k = 0; k < contact->n_points; ++k) {
             fu_contact_point point;
-            fu_contact_place(model, contact, &on, state, e, k, &point);
-            if (!fu_contact_is_active(model, contact, &on, &point)) continue;
+            if (!fu_contact_is_active_at(model, contact, &on, state, e, k, &heights, &point)) continue;
             fu_contact_derivatives(model, contact, &on, &point);
             if (!alone) {
                 fu_contact_add_derivatives(model, contact, &on, state, e, k, &point, psi, weights, system);

@@ -89,18 +89,18 @@ extern const fu_output fu_contact_output_fields[];
 /* A point that may be in contact: its position and velocity; its history, null without friction; the time since, s,
  * the rotation of its body relative to the surface since then, and its rate, along the shape's axes. In contact:
  * penetration and its rate, the normal, its rate along the shape's axes, the arm from the point to the contact of
- * its sphere, the velocity there relative to the surface, along the shape's axes, the force on it (a length) with its
- * friction, derivatives by its position, by its velocity relative to the surface and by the stretch alone, the stored
- * energy and the dissipated power of the normal force, the energy of friction's spring, its stretch, along the shape's
- * axes, its path, and whether friction slides. On a span: the part of the step after which the material there entered
- * the span, 0 if it was there before, the history of the material, and
- * changes of its stretch and place by the material coordinate, along the shape's axes. */
+ * its sphere, the velocity there relative to the surface, along the shape's axes, `past`, that of the point itself,
+ * along the ground's, the force on it (a length) with its friction, derivatives by its position, by its velocity
+ * relative to the surface and by the stretch alone, the stored energy and the dissipated power of the normal force, the
+ * energy of friction's spring, its stretch, along the shape's axes, its path, and whether friction slides. On a span:
+ * the part of the step after which the material there entered the span, 0 if it was there before, the history of the
+ * material, and changes of its stretch and place by the material coordinate, along the shape's axes. */
 typedef struct {
     double r[3], v[3];
     const fu_friction_mark *mark;
     double since, turn[3], spin[3], arm[3], slip[3], normal_rate[3];
-    double depth, sinking, normal_force, f[3], friction[3], by_place[9], by_rate[9], by_stretch[9], energy, power,
-        spring_energy, stretch[3];
+    double past[3], depth, sinking, normal_force, f[3], friction[3], by_place[9], by_rate[9], by_stretch[9], energy,
+        power, spring_energy, stretch[3];
     fu_distance distance;
     fu_friction_end friction_end;
     int slides;
@@ -146,11 +146,32 @@ void fu_contact_slip(const fu_model *model, const fu_contact *contact, const fu_
 void fu_contact_note(int dim, const fu_attachment_state *on, const fu_contact_point *point, fu_friction_mark *mark);
 int fu_contact_is_active(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                          fu_contact_point *point);
+/* Computes the forces on a point whose penetration is positive. */
+void fu_contact_press(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                      fu_contact_point *point);
 void fu_contact_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                             fu_contact_point *point);
 double fu_contact_step(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, double h,
                        const fu_contact_point *now, const fu_contact_point *next, double f[3], double friction[3],
                        double by_next[9], double by_stretch[9]);
+
+/* couplings/contact/heights.c: the penetrations of all points of an element, m, the largest of them, and their rates,
+ * m/s; known of a cable on a plane that does not move, without friction. Computes them; returns whether they are known.
+ */
+typedef struct {
+    int is_known;
+    double normal[3], deepest, depth[FU_CONTACT_POINTS], sinking[FU_CONTACT_POINTS];
+} fu_contact_heights;
+int fu_contact_heights_of(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                          const fu_state *state, int element, fu_contact_heights *out);
+/* Computes them; returns whether any point may be in contact, known or not. */
+int fu_contact_begin_element(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                             const fu_state *state, int element, fu_contact_heights *out);
+/* Returns whether a point is in contact, and computes its contact as fu_contact_is_active does; by height without its
+ * position and velocity, whose part along the normal is in `past`. */
+int fu_contact_is_active_at(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                            const fu_state *state, int element, int number, const fu_contact_heights *heights,
+                            fu_contact_point *point);
 
 /* couplings/contact/places.c */
 int fu_contact_elements(const fu_model *model, const fu_contact *contact);

@@ -174,11 +174,12 @@ void fu_contact_visit(const fu_model *model, const fu_contact *contact, const fu
     fu_attachment_state on;
     fu_surface_at(model, &contact->surface, state, &on);
     for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
-        if (!fu_contact_may_be_active(model, contact, &on, state, e, 0.0)) continue;
+        fu_contact_heights heights;
+        if (!fu_contact_begin_element(model, contact, &on, state, e, &heights)) continue;
         for (int k = 0; k < contact->n_points; ++k) {
             fu_contact_point point;
-            fu_contact_place(model, contact, &on, state, e, k, &point);
-            if (fu_contact_is_active(model, contact, &on, &point)) visit(model, contact, &on, e, k, &point, context);
+            if (fu_contact_is_active_at(model, contact, &on, state, e, k, &heights, &point))
+                visit(model, contact, &on, e, k, &point, context);
         }
     }
 }

@@ -10,7 +10,7 @@ void fu_contact_slip(const fu_model *model, const fu_contact *contact, const fu_
                      fu_contact_point *point)
 {
     const int dim = model->dim;
-    double w[3], normal[3], turned[3], arm[3] = {0.0}, turning[3] = {0.0};
+    double *const w = point->past, normal[3], turned[3], arm[3] = {0.0}, turning[3] = {0.0};
     fu_surface_distance(dim, &contact->surface, on, point->r, &point->distance);
     fu_surface_past(dim, on, point->r, point->v, w);
     point->depth = contact->radius - point->distance.g;
@@ -45,9 +45,15 @@ void fu_contact_note(int dim, const fu_attachment_state *on, const fu_contact_po
 int fu_contact_is_active(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                          fu_contact_point *point)
 {
-    const int dim = model->dim;
     fu_contact_slip(model, contact, on, point);
     if (!(point->depth > 0.0)) return 0;
+    fu_contact_press(model, contact, on, point);
+    return 1;
+}
+
+void fu_contact_press(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                      fu_contact_point *point)
+{
     const fu_normal_force of = fu_normal_force_at(contact, point->depth, point->sinking, point->depth);
     point->normal_force = of.p;
     point->energy = of.energy;
@@ -55,23 +61,20 @@ int fu_contact_is_active(const fu_model *model, const fu_contact *contact, const
     point->power = (of.p - of.elastic) * point->sinking;
     memset(point->friction, 0, sizeof point->friction);
     memset(point->f, 0, sizeof point->f);
-    for (int d = 0; d < dim; ++d) point->f[d] = of.p * point->distance.n[d];
+    for (int d = 0; d < model->dim; ++d) point->f[d] = of.p * point->distance.n[d];
     if (point->mark) fu_contact_stretch(model, contact, on, point);
-    return 1;
 }
 
 /* Computes the derivatives of the force on a point in contact. */
 void fu_contact_derivatives(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                             fu_contact_point *point)
 {
-    const int dim = model->dim;
     const fu_surface_kernels *kernel = contact->surface.kernel;
     const fu_distance *at = &point->distance;
-    double w[3], f[3];
-    fu_surface_past(dim, on, point->r, point->v, w);
-    const fu_normal_force of = fu_normal_force_at(contact, point->depth, -fu_dot(dim, at->n, w), point->depth);
+    const fu_normal_force of = fu_normal_force_at(contact, point->depth, point->sinking, point->depth);
     const double law[3] = {of.p, of.by_depth, of.by_rate};
-    kernel->frictionless(at->n, at->H, w, law, f, point->by_place, point->by_rate);
+    double f[3];
+    kernel->frictionless(at->n, at->H, point->past, law, f, point->by_place, point->by_rate);
     memset(point->by_stretch, 0, sizeof point->by_stretch);
     if (point->mark && of.p > 0.0) fu_contact_friction_derivatives(model, contact, on, point);
 }

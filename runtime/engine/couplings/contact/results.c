@@ -110,12 +110,13 @@ void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, cons
     (void)acceleration, (void)work;
     *numbers = (fu_contact_output){.penetration = 0.0};
     fu_surface_at(model, &contact->surface, state, &on);
-    for (int e = 0; e < n; ++e)
+    for (int e = 0; e < n; ++e) {
+        fu_contact_heights heights;
+        fu_contact_heights_of(model, contact, &on, state, e, &heights);
         for (int k = 0; k < contact->n_points; ++k) {
             fu_contact_point point;
             const double weight = fu_contact_weight(contact, e, k);
-            fu_contact_place(model, contact, &on, state, e, k, &point);
-            const int in_contact = fu_contact_is_active(model, contact, &on, &point);
+            const int in_contact = fu_contact_is_active_at(model, contact, &on, state, e, k, &heights, &point);
             if (contact->cable >= 0) take_into_length(&sum, contact->arc[(long)e * contact->n_points + k], point.depth);
             if (!in_contact) continue;
             for (int d = 0; d < model->dim; ++d) {
@@ -125,6 +126,7 @@ void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, cons
             numbers->penetration = fmax(numbers->penetration, point.depth);
             if (contact->cable < 0) numbers->touching += 1.0;
         }
+    }
     if (contact->cable >= 0) take_into_length(&sum, contact->length, sum.depth); /* to its end */
 }
 
