@@ -149,11 +149,20 @@ void fu_add_element_matrix(const fu_model *model, int first, int n, const double
     if (!system) return;
     const int rows = FU_BAND_ROWS(system->width), diagonal = FU_BAND_DIAGONAL(system->width),
               *unknown = model->unknown_of_dof + first;
-    int outside_band = 0;
-    for (int j = 0; j < n; ++j) outside_band |= unknown[j] <= FU_COMBINED || unknown[j] >= system->n;
+    int outside_band = 0, is_run = unknown[0] >= 0; /* is_run: unknowns follow each other, none is fixed */
+    for (int j = 0; j < n; ++j) {
+        outside_band |= unknown[j] <= FU_COMBINED || unknown[j] >= system->n;
+        is_run &= unknown[j] == unknown[0] + j;
+    }
     if (outside_band) {
         for (int i = 0; i < n; ++i)
             for (int j = 0; j < n; ++j) fu_add(model, system, first + i, first + j, K[i * n + j]);
+        return;
+    }
+    if (is_run) {
+        double *column = system->K + (long)unknown[0] * rows + diagonal;
+        for (int j = 0; j < n; ++j, column += rows - 1)
+            for (int i = 0; i < n; ++i) column[i] += K[i * n + j];
         return;
     }
     for (int j = 0; j < n; ++j) {

@@ -80,7 +80,9 @@ void fu_drag_visit(const fu_model *model, const fu_drag *drag, const double *q, 
     int is_first = 1;
     double K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
     fu_drag_points points;
-    fu_drag_block block = {.points = &points, .constants = &constants};
+    fu_drag_block block; /* set member by member: most of its memory is of larger elements */
+    block.points = &points;
+    block.constants = &constants;
     for (int e = 0; e < cable->n_elements; ++e) {
         block.element = e;
         block.first = cable->first + e * cable->per_node;
