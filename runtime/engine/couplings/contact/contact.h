@@ -156,22 +156,16 @@ double fu_contact_step(const fu_model *model, const fu_contact *contact, const f
                        double by_next[9], double by_stretch[9]);
 
 /* couplings/contact/heights.c: the penetrations of all points of an element, m, the largest of them, and their rates,
- * m/s; known of a cable on a plane that does not move, without friction. Computes them; returns whether they are known.
- */
+ * m/s; known of a cable on a plane that does not move, without friction. Then a point's contact by its height, as
+ * fu_contact_is_active has it, without its position and velocity, whose part along the normal is in `past`. */
 typedef struct {
     int is_known;
     double normal[3], deepest, depth[FU_CONTACT_POINTS], sinking[FU_CONTACT_POINTS];
 } fu_contact_heights;
-int fu_contact_heights_of(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
-                          const fu_state *state, int element, fu_contact_heights *out);
-/* Computes them; returns whether any point may be in contact, known or not. */
-int fu_contact_begin_element(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
-                             const fu_state *state, int element, fu_contact_heights *out);
-/* Returns whether a point is in contact, and computes its contact as fu_contact_is_active does; by height without its
- * position and velocity, whose part along the normal is in `past`. */
-int fu_contact_is_active_at(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
-                            const fu_state *state, int element, int number, const fu_contact_heights *heights,
-                            fu_contact_point *point);
+void fu_contact_compute_heights(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                                const fu_state *state, int element, fu_contact_heights *out);
+int fu_contact_is_pressed(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, int number,
+                          const fu_contact_heights *heights, fu_contact_point *point);
 
 /* couplings/contact/places.c */
 int fu_contact_elements(const fu_model *model, const fu_contact *contact);
@@ -188,6 +182,35 @@ void fu_contact_add_force(const fu_model *model, const fu_contact *contact, cons
                           double *f);
 void fu_contact_add_on_cable(const fu_model *model, const fu_contact *contact, int element, int number,
                              const double *force, double *f);
+
+/* Computes the heights of an element if they are known; returns whether they are. */
+static inline int fu_contact_heights_of(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                                        const fu_state *state, int element, fu_contact_heights *out)
+{
+    out->is_known = !(contact->law.friction > 0.0) && contact->cable >= 0 && contact->surface.shape == FU_FLAT &&
+                    !contact->surface.inside && contact->surface.on->body < 0 && contact->n_points <= FU_CONTACT_POINTS;
+    if (out->is_known) fu_contact_compute_heights(model, contact, on, state, element, out);
+    return out->is_known;
+}
+
+/* Computes them; returns whether any point of the element may be in contact, known or not. */
+static inline int fu_contact_begin_element(const fu_model *model, const fu_contact *contact,
+                                           const fu_attachment_state *on, const fu_state *state, int element,
+                                           fu_contact_heights *out)
+{
+    if (fu_contact_heights_of(model, contact, on, state, element, out)) return out->deepest > 0.0;
+    return fu_contact_may_be_active(model, contact, on, state, element, 0.0);
+}
+
+/* Returns whether a point of the element is in contact, and computes its contact. */
+static inline int fu_contact_is_active_at(const fu_model *model, const fu_contact *contact,
+                                          const fu_attachment_state *on, const fu_state *state, int element, int number,
+                                          const fu_contact_heights *heights, fu_contact_point *point)
+{
+    if (heights->is_known) return fu_contact_is_pressed(model, contact, on, number, heights, point);
+    fu_contact_place(model, contact, on, state, element, number, point);
+    return fu_contact_is_active(model, contact, on, point);
+}
 
 /* couplings/contact/rolling.c: whether friction acts off the points, on spheres of a body; the axes of a body along the
  * shape's, and their angular velocity, along the shape's axes; the rotation since the mark, and its rate. */

@@ -6,17 +6,9 @@
 #include <math.h>
 #include <string.h>
 
-static int is_by_height(const fu_contact *contact)
+void fu_contact_compute_heights(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
+                                const fu_state *state, int element, fu_contact_heights *out)
 {
-    return contact->cable >= 0 && contact->surface.shape == FU_FLAT && !contact->surface.inside &&
-           contact->surface.on->body < 0 && !(contact->law.friction > 0.0) && contact->n_points <= FU_CONTACT_POINTS;
-}
-
-int fu_contact_heights_of(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
-                          const fu_state *state, int element, fu_contact_heights *out)
-{
-    out->is_known = is_by_height(contact);
-    if (!out->is_known) return 0;
     const int dim = model->dim, n = model->cables[contact->cable].coordinates / dim,
               first = fu_contact_first(model, contact, element);
     double height[FU_MAX_COORDINATES], rate[FU_MAX_COORDINATES];
@@ -33,24 +25,11 @@ int fu_contact_heights_of(const fu_model *model, const fu_contact *contact, cons
         out->sinking[k] = -fu_dot(n, N, rate);
         out->deepest = fmax(out->deepest, out->depth[k]);
     }
-    return 1;
 }
 
-int fu_contact_begin_element(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
-                             const fu_state *state, int element, fu_contact_heights *out)
+int fu_contact_is_pressed(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on, int number,
+                          const fu_contact_heights *heights, fu_contact_point *point)
 {
-    if (fu_contact_heights_of(model, contact, on, state, element, out)) return out->deepest > 0.0;
-    return fu_contact_may_be_active(model, contact, on, state, element, 0.0);
-}
-
-int fu_contact_is_active_at(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
-                            const fu_state *state, int element, int number, const fu_contact_heights *heights,
-                            fu_contact_point *point)
-{
-    if (!heights->is_known) {
-        fu_contact_place(model, contact, on, state, element, number, point);
-        return fu_contact_is_active(model, contact, on, point);
-    }
     point->mark = 0;
     point->depth = heights->depth[number];
     point->sinking = heights->sinking[number];
