@@ -147,7 +147,8 @@ def render(every: list[Derived], wanted: Iterable[str], done: Callable[[str], No
                                                                                  stages=shared[header(group)])
     blocks = {name for derived in every for name in block_kernels(derived)}
     laws = [derived for derived in every if derived.family.role == "law" and block_kernels(derived)]
-    points = {role: of for role in POINT_BLOCKS if (of := [derived for derived in every if derived.family.role == role])}
+    points = {role: of for role in POINT_BLOCKS
+              if (of := [derived for derived in every if derived.family.role == role])}
     forms = {kernel: program for kernel in BLOCKS for derived in reversed(laws) for program in derived.programs
              if program.name in blocks and program.name == f"{derived.family.name}_{kernel}"}
     of_roles = tables(every, layout_of)

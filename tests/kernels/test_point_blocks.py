@@ -21,12 +21,13 @@ FAMILIES = [name for name, family in families().items() if family.role in POINT_
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="calls a compiler of Unix")
 
 
-@pytest.fixture(scope="module")
-def library(tmp_path_factory):
+@pytest.fixture(scope="module", params=[[], ["-D__builtin_cpu_supports(name)=0"]], ids=["machine", "plain"])
+def library(request, tmp_path_factory):
+    """Return the library as it chooses its kernels on this machine, and as on one without AVX2."""
     made = tmp_path_factory.mktemp("point_blocks") / "point_blocks.so"
     folder = drift.folder()
-    subprocess.run([*compiler(), "-std=c11", "-O1", "-w", "-shared", "-fPIC", f"-I{folder}", folder / "point_blocks.c",
-                    "-lm", "-o", made], check=True)
+    subprocess.run([*compiler(), "-std=c11", "-O1", "-w", "-shared", "-fPIC", *request.param, f"-I{folder}",
+                    folder / "point_blocks.c", "-lm", "-o", made], check=True)
     return ctypes.CDLL(made)
 
 
