@@ -8,6 +8,9 @@
 
 #define FU_BLOCK FU_BLOCK_POINTS
 #define FU_BLOCK_TARGET
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wpsabi" /* functions with vectors as values are inlined */
+#endif
 #include "kernels.h"
 #include "drag.c"
 #include "planar_drag.c"
