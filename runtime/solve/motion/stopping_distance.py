@@ -30,7 +30,10 @@ def _distance(scene: SceneData, cable: Cable, drag: Drag | None) -> float:
         return np.inf
     fluids = scene.fluids.values() if drag.fluid is None else [scene.fluids[drag.fluid]]
     density = min(fluid.density for fluid in fluids)
-    diameter = 2 * outer_radius_of(cable.section) if drag.diameter is None else drag.diameter
-    added = density * np.pi / 4 * diameter**2 * (drag.added_mass or 0.0)
+    radius = outer_radius_of(cable.section) if drag.diameter is None else drag.diameter / 2
+    if radius is None:
+        return np.inf
+    diameter, coefficient = 2 * radius, drag.added_mass
+    added = density * np.pi / 4 * diameter**2 * coefficient if isinstance(coefficient, float) else 0.0
     mass = cable.material.density * float(cable.section.mass_moments()[0]) + added
     return float(2 * mass / (density * diameter * drag.normal))
