@@ -61,7 +61,8 @@ SCENE_PLACES = {
         "results/trajectories.py", "solve/motion/event_handler.py", "solve/motion/run.py",
         "solve/notes/coarse_slides.py", "solve/notes/diagnosis.py", "solve/notes/supersonic_loads.py"],
     "loads and flows at a point or along a cable": [
-        "choice/candidates.py", "choice/planar.py", "choice/remeshing.py", "results/section_forces/cable_loads.py"],
+        "choice/candidates.py", "choice/planar.py", "choice/remeshing.py", "results/section_forces/cable_loads.py",
+        "solve/motion/stopping_distance.py"],
     "connections of bodies by joints": [
         "solve/notes/coarse_meshes.py", "solve/notes/coincident_points.py", "solve/notes/sensitivity.py",
         "solve/statics/turns.py"],

@@ -162,7 +162,9 @@ def test_at_rest():
 
 
 def test_at_rest_on_a_sheave_is_refused():
-    """The rope as drawn has too little tension, so that 7 cm of it run over the sheave, and with them the grip."""
+    """The rope as drawn has too little tension, so that 7 cm of it run over the sheave, and with them the grip. Whether
+    the search ends with the grip at the sheave or with the rope off it depends on the rounding of the machine.
+    """
     scene = fu.Scene()
     scene.rigid_body("weight", mass=300, inertia=(1, 1, 1), position=(20.3, -10, 0))
     scene.rigid_body("load", mass=1, inertia=(1, 1, 1), position=(19.9, -1, 0))
@@ -173,7 +175,7 @@ def test_at_rest_on_a_sheave_is_refused():
     end = drawn.arc_lengths(0.0)[0][1]
     scene.spring(("haul", end - 0.03), "load", stiffness=100.0, name="hanger")
     with pytest.raises(fu.EquilibriumError, match=r'spring "hanger" holds rope "haul" at s = .*, which '
-                       'reaches sheave "top"'):
+                       r'reaches sheave "top"|the rope leaves sheave "top"'):
         scene.equilibrium()
 
 

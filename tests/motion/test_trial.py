@@ -157,13 +157,16 @@ def test_an_exception_in_a_trial_leaves_the_older_file(tmp_path):
 
 def test_work_beyond_any_count_is_no_error():
     """The alternative of a very stiff scene costs more evaluations than a C integer holds."""
+    class Unseen:
+        is_shown = False
+
     class Rated:
         time, given = 0.0, []
 
-        def advance(self, follow, every, stream, most_evaluations):
+        def advance(self, follow, every, stream, most_evaluations, shown):
             assert most_evaluations < 2**63
             return "completed"
 
     for cost in (1e30, float("inf")):
-        found = trial_run.on_trial(Rated(), Rival(Explicit(), cost), Radau(), 1.0, 1, None, None)
+        found = trial_run.on_trial(Rated(), Rival(Explicit(), cost), Radau(), 1.0, 1, Unseen, None)
         assert found == ("completed", "", 0.0)

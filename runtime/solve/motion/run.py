@@ -35,7 +35,7 @@ from ..notes.signal_steps import unresolved
 from ..notes.slack_growth import SlackMotion, grown
 from ..notes.uncontrolled_errors import NormalForces, uncontrolled_errors
 from .event_handler import EventHandler
-from .integrator_choice import choose, tol_of
+from .integrator_choice import Rival, choose, tol_of
 from .long_runs import LongRun
 from .progress import ProgressDisplay
 from .row_stream import RowBlocks, RowStream, row_blocks
@@ -108,22 +108,12 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: ProgressDispl
     LOG.info("run of %g s: %d degrees of freedom, %s (%s), set up in %.3g s", settings.duration, ready.model.n_dof,
              method.name, reason, set_up)
     run = _begun(scene, settings, ready, method, blocks, on_progress, stream, on_trial=rival is not None)
-    status = run.status
-    lost_trials: list[str] = []
-    while rival is not None and status is None:
-        status, lost, cost = on_trial(run.engine, rival, method, settings.duration, blocks.every, run.observer, stream)
-        if lost:
-            if trials is not None:
-                trials.note(scene, method, rival)
-            lost_trials.append(method.name)
-            again = rival.method.name in lost_trials  # its cost has been measured
-            after = None if again else next_rival(method, cost, rival)
-            method, reason, rival = rival.method, f"{reason}; {lost}", after
-            run = _begun(scene, settings, _prepared(scene, settings, initial), method, blocks, on_progress, stream,
-                         on_trial=rival is not None)
-            status = run.status
-        elif stream is not None:
-            stream.settled()
+
+    def begun_with(other: Integrator, on_trial: bool) -> _Begun:
+        anew = _prepared(scene, settings, initial)
+        return _begun(scene, settings, anew, other, blocks, on_progress, stream, on_trial)
+
+    run, status, method, why = _tried(scene, run, method, rival, begun_with, settings, blocks, stream, trials)
     given = initial if isinstance(initial, InitialState) else ()  # a state of rest starts at the scene's velocities
     messages += run.gaps + _warned([*_broken_velocities(run.model, run.change, given),
                                     *velocity_jumps(scene.as_drawn, settings.duration, given),
@@ -131,7 +121,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: ProgressDispl
     started = run.began - begin - set_up
     status = _ended(run, blocks.every, stream) if status in (None, "running") else status
     if status == "interrupted" and stream is not None and not stream.has_begun:  # write a checkpoint to resume from
-        run = _begun(scene, settings, _prepared(scene, settings, initial), method, blocks, on_progress, stream)
+        run = begun_with(method, on_trial=False)
     messages += run.observer.notes() + _warned(run.event_handler.notes())
     cpu, ended = clock() - cpu, time.perf_counter()
     run.row_notes.see(run.engine)
@@ -143,8 +133,33 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: ProgressDispl
     LOG.info("run %s after %.3g s", status.replace("_", " "), total)
     for message in messages:
         LOG.info("run: %s", message)
-    return Simulation(run.model, run.engine, run.event_handler, status, messages, reason, set_up, started, noted, total,
-                      cpu)
+    return Simulation(run.model, run.engine, run.event_handler, status, messages, reason + why, set_up, started, noted,
+                      total, cpu)
+
+
+def _tried(scene: SceneData, run: _Begun, method: Integrator, rival: Rival | None,
+           begun_with: Callable[[Integrator, bool], _Begun], settings: RunSettings, blocks: RowBlocks,
+           stream: RowStream | None, trials: TrialCache | None) -> tuple[_Begun, str | None, Integrator, str]:
+    """Return a run after the trials of its method and of its rivals, its status, its method, and the reasons for it.
+
+    begun_with: returns the run anew with a method, and whether that is on trial.
+    """
+    status, why = run.status, ""
+    lost_trials: list[str] = []
+    while rival is not None and status is None:
+        status, lost, cost = on_trial(run.engine, rival, method, settings.duration, blocks.every, run.observer, stream)
+        if lost:
+            if trials is not None:
+                trials.note(scene, method, rival)
+            lost_trials.append(method.name)
+            again = rival.method.name in lost_trials  # its cost has been measured
+            after = None if again else next_rival(method, cost, rival)
+            method, why, rival = rival.method, f"{why}; {lost}", after
+            run = begun_with(method, rival is not None)
+            status = run.status
+        elif stream is not None:
+            stream.settled()
+    return run, status, method, why
 
 
 def _result_notes(scene: SceneData, settings: RunSettings, run: _Begun,

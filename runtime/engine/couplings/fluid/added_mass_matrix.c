@@ -3,7 +3,8 @@
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/attachments.h"
-#include "couplings/fluid/points.h"
+#include "couplings/common/point_lanes.h"
+#include "couplings/fluid/drag.h"
 
 #include <string.h>
 

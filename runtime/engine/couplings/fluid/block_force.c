@@ -1,7 +1,8 @@
 /* Forces of a fluid along a cable at blocks of points: drag and lift by the relative velocity, buoyancy, and the
  * inertia of the fluid (derive/couplings/drag.py, derive/couplings/added_mass.py), with their derivatives. */
 #include "bodies/model.h"
-#include "couplings/fluid/points.h"
+#include "couplings/common/point_lanes.h"
+#include "couplings/fluid/drag.h"
 
 #include <string.h>
 

@@ -1,5 +1,6 @@
 /* Sums over the points of a block: forces on an element, and their derivatives. */
-#include "couplings/fluid/points.h"
+#include "couplings/common/point_lanes.h"
+#include "couplings/fluid/drag.h"
 
 FU_INLINE const fu_points *shapes_of_field(const fu_block_shapes *of, int field)
 {

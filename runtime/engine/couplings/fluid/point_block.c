@@ -1,6 +1,7 @@
 /* Blocks of points of quadrature on an element of a cable: shape functions, and motion. */
 #include "bodies/model.h"
-#include "couplings/fluid/points.h"
+#include "couplings/common/point_lanes.h"
+#include "couplings/fluid/drag.h"
 
 #include <string.h>
 

@@ -1,7 +1,8 @@
 /* The loop over all points of quadrature of a cable in a fluid, in blocks, with the fluid there. */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
-#include "couplings/fluid/points.h"
+#include "couplings/common/point_lanes.h"
+#include "couplings/fluid/drag.h"
 
 #include <string.h>
 

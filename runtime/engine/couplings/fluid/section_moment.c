@@ -1,7 +1,8 @@
 /* Forces of a fluid on slope and chord of a beam by the moment on its section (derive/couplings/section_flow.py). The
  * force on its axis is that of any cable, in couplings/fluid/block_force.c. */
 #include "bodies/cables.h"
-#include "couplings/fluid/points.h"
+#include "couplings/common/point_lanes.h"
+#include "couplings/fluid/drag.h"
 
 #include <math.h>
 

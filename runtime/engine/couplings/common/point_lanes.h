@@ -1,9 +1,9 @@
 /* Private: operations on a number of each point of a block, inlined. */
-#ifndef FUNICULAR_COUPLINGS_FLUID_POINTS_H
-#define FUNICULAR_COUPLINGS_FLUID_POINTS_H
+#ifndef FUNICULAR_COUPLINGS_COMMON_POINT_LANES_H
+#define FUNICULAR_COUPLINGS_COMMON_POINT_LANES_H
 
 #include "base/simd.h"
-#include "couplings/fluid/drag.h"
+#include "point_blocks.h"
 
 /* Numbers of two blocks by their places in both, those of the second after those of the first. */
 #if defined(__clang__) || __GNUC__ >= 12
