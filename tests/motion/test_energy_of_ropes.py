@@ -162,11 +162,11 @@ def test_steps_grow_in_number_with_the_root_of_tol(tmp_path):
     """
     row = {factor: levels[0] for factor, levels in FACTORS.items()} | {"element": "cable8p", "rope": "rope over a body"}
     settings = {"duration": 0.02, "output_step": 1e-3, "progress": False}
-    tols = (1e-5, 1e-6, 1e-7)
+    tols = (1e-4, 1e-5, 1e-6)
     runs = [build_pair(row, tmp_path).run(tol=tol, integrator="energy", **settings) for tol in tols]
     exact = build_pair(row, tmp_path).run(tol=1e-9, integrator="radau", **settings)["hoist.position"]
     counts = [run.report["steps"] for run in runs]
-    assert all(2.5 < second / first < 4 for first, second in pairwise(counts))  # measured: 3.1, 3.5
+    assert all(2.5 < second / first < 4 for first, second in pairwise(counts))  # measured: 3.0, 3.2
     for run, tol in zip(runs, tols, strict=True):
         assert np.abs(run["hoist.position"] - exact).max() < tol * np.ptp(exact, axis=0).max()  # measured: 0.1, 0.4
         assert run.report["smallest_step_s"] > 1e-9
