@@ -7,7 +7,7 @@ import numpy as np
 from ...parts.cable import Cable
 from ...parts.drag import Drag
 from ...parts.scene_data import SceneData
-from ...parts.section import outer_radius_of
+from ..notes.note import LineStiffness
 
 
 def stopping_share(scene: SceneData) -> float:
@@ -28,12 +28,8 @@ def _distance(scene: SceneData, cable: Cable, drag: Drag | None) -> float:
     """Return the distance of one cable in m, in the lightest fluid that acts on it."""
     if drag is None or not drag.normal:
         return np.inf
-    fluids = scene.fluids.values() if drag.fluid is None else [scene.fluids[drag.fluid]]
-    density = min(fluid.density for fluid in fluids)
-    radius = outer_radius_of(cable.section) if drag.diameter is None else drag.diameter / 2
-    if radius is None:
-        return np.inf
-    diameter, coefficient = 2 * radius, drag.added_mass
-    added = density * np.pi / 4 * diameter**2 * coefficient if isinstance(coefficient, float) else 0.0
-    mass = cable.material.density * float(cable.section.mass_moments()[0]) + added
-    return float(2 * mass / (density * diameter * drag.normal))
+    density = min(fluid.density for fluid in scene.fluids_of(drag))
+    mass = LineStiffness.of(cable, scene.dim).mass
+    if drag.added_mass is not None:
+        mass += density * drag.displaced(cable) * float(drag.added_of_cable()[0])
+    return 2 * mass / (density * drag.width(cable) * drag.normal)
