@@ -24,6 +24,7 @@ from . import added_mass, section_flow, wetness
 
 DRAGS = {3: "drag", 2: "planar_drag"}
 RELATIVE = "velocity of the fluid less that of the point"
+FORCE = "force a length of the undeformed cable"
 SOURCE = "Morison et al. 1950; Hall & Goupee 2015"
 
 
@@ -49,21 +50,30 @@ def _size(p: Program, name: str, square: sp.Expr, least: sp.Expr) -> sp.Expr:
 def along_cable(dim: int) -> Program:
     """Return the kernel of the force a length of the undeformed cable, with its derivatives."""
     p = Program(f"{DRAGS[dim]}_along_cable", "drag a length of a cable, and its derivatives", SOURCE)
-    t, w, f = _force_along_cable(p, dim)
-    p.stage("derivatives")
-    by_t, by_w = jacobian(p, f, t), jacobian(p, f, w)
-    p.output("f", f, "N/m", "force a length of the undeformed cable")
-    p.output("f_t", by_t, "N/m", "derivatives of f by t")
-    p.output("f_w", by_w, "N s/m^2", "derivatives of f by w")
-    return p
+    return _with_derivatives(p, *_force_along_cable(p, dim))
 
 
 def force_along_cable(dim: int) -> Program:
     """Return the kernel of the same force alone."""
     p = Program(f"{DRAGS[dim]}_force_along_cable", "drag a length of a cable", SOURCE)
-    f = _force_along_cable(p, dim)[-1]
-    p.output("f", f, "N/m", "force a length of the undeformed cable")
+    p.output("f", _force_along_cable(p, dim)[-1], "N/m", FORCE)
     return p
+
+
+def _with_derivatives(p: Program, t: np.ndarray, w: np.ndarray, f: np.ndarray) -> Program:
+    """Add the outputs of a force a length of a cable: the force and its derivatives."""
+    p.stage("derivatives")
+    by_t, by_w = jacobian(p, f, t), jacobian(p, f, w)
+    p.output("f", f, "N/m", FORCE)
+    p.output("f_t", by_t, "N/m", "derivatives of f by t")
+    p.output("f_w", by_w, "N s/m^2", "derivatives of f by w")
+    return p
+
+
+def _along_axis(p: Program, t: np.ndarray) -> tuple[sp.Expr, np.ndarray]:
+    """Define the length of the slope, and the unit vector along the axis by its reciprocal."""
+    length = p.define("len_t", sp.sqrt(t.dot(t)))
+    return length, p.vector("i", t * p.define("inv_len_t", 1 / length))
 
 
 def _force_along_cable(p: Program, dim: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -73,8 +83,7 @@ def _force_along_cable(p: Program, dim: int) -> tuple[np.ndarray, np.ndarray, np
     normal, tangential, least = p.input("c", 3, "N s^2/m^3, N s^2/m^3, m/s",
                                         "rho d C_n/2, rho pi d C_t/2, and the least size of velocities")
     p.stage("tangent")
-    length = _size(p, "len_t", t.dot(t), sp.S.Zero)
-    i = p.vector("i", t * sp.Symbol("inv_len_t"))
+    length, i = _along_axis(p, t)
     p.stage("velocities along and across")
     w_t = p.define("w_t", i.dot(w))
     n = p.vector("w_n", w - w_t * i)
@@ -93,18 +102,12 @@ def lift_along_cable() -> Program:
     w = p.input("w", 3, "m/s", RELATIVE)
     lift, least = p.input("c_lift", 2, "N s^2/m^3, m/s", "rho d C_L/2, and the least size of w across")
     p.stage("flow across")
-    inverse = p.define("inv_len_t", 1 / p.define("len_t", sp.sqrt(t.dot(t))))
-    i = p.vector("i", t * inverse)
+    _, i = _along_axis(p, t)
     n = p.vector("w_n", w - i.dot(w) * i)
     size = _size(p, "size_n", n.dot(n), least)
     p.stage("force")
     f = p.vector("F", p.define("lift", lift * size) * np.array(cross(t, w)))
-    p.stage("derivatives")
-    by_t, by_w = jacobian(p, f, t), jacobian(p, f, w)
-    p.output("f", f, "N/m", "force a length of the undeformed cable")
-    p.output("f_t", by_t, "N/m", "derivatives of f by t")
-    p.output("f_w", by_w, "N s/m^2", "derivatives of f by w")
-    return p
+    return _with_derivatives(p, t, w, f)
 
 
 def on_foil(dim: int) -> Program:
