@@ -17,15 +17,14 @@
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #define FU_HAS_AVX2 __builtin_cpu_supports("avx2")
-#define FU_AT_POINTS(name, parameters, arguments) \
-__attribute__((target("avx2"))) static void avx2_##name parameters { name arguments; } \
-static void plain_##name parameters { name arguments; }
+#define FU_AVX2 __attribute__((target("avx2")))
 #else
 #define FU_HAS_AVX2 0
-#define FU_AT_POINTS(name, parameters, arguments) \
-static void avx2_##name parameters { name arguments; } \
-static void plain_##name parameters { name arguments; }
+#define FU_AVX2
 #endif
+#define FU_AT_POINTS(name, parameters, arguments) \
+FU_AVX2 static void avx2_##name parameters { name arguments; } \
+static void plain_##name parameters { name arguments; }
 
 FU_AT_POINTS(drag_along_cable,
     (const fu_points *t, const fu_points *w, const fu_points *c, fu_points *f, fu_points *f_t, fu_points *f_w),
