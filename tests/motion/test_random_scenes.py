@@ -70,7 +70,11 @@ def check_run(time: float, scene: fu.Scene, integrator: str, steps: dict, initia
 
 
 def check_energy(time: float, scene: fu.Scene, integrator: str, steps: dict) -> None:
-    """Check that a run reports an unexplained tenth of the exchanged energy."""
+    """Check that a run reports an unexplained tenth of the exchanged energy.
+
+    A millionth of the stored energy passes as truncation: a rod that spins freely exchanges none, yet genalpha's steps
+    change its kinetic energy by 1.4e-4 to 2e-4 of tol.
+    """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", fu.FunicularWarning)
         run = computed(time, scene, integrator, steps)
@@ -78,10 +82,10 @@ def check_energy(time: float, scene: fu.Scene, integrator: str, steps: dict) -> 
         return
     balance = run.energy_balance()
     beams = [*scene.cables.values(), *(body.mesh for body in scene.bodies.values() if body.kind == "modal_body")]
-    rounding = 1e-9 * max(float(np.abs(run[name]).max()) for name in run.keys() if name.startswith("energy."))
-    rounding += sum(1e-24 * beam.material.youngs_modulus * beam.section.area * beam.length for beam in beams)
+    truncation = 1e-6 * max(float(np.abs(run[name]).max()) for name in run.keys() if name.startswith("energy."))
+    rounding = sum(1e-24 * beam.material.youngs_modulus * beam.section.area * beam.length for beam in beams)
     off = float(np.abs(balance.residual).max())
-    assert off <= max(0.1 * balance.exchanged, rounding) or run.report["messages"]
+    assert off <= max(0.1 * balance.exchanged, truncation + rounding) or run.report["messages"]
 
 
 def check_text(scene: fu.Scene) -> None:
