@@ -27,7 +27,7 @@
 #define MAX_FIXED_NEWTON_TOLERANCE 1e-14 /* of the extent: largest Newton tolerance of a fixed step */
 /* of the permitted error: Newton's tolerance if later steps compensate the residual */
 #define CARRIED_NEWTON_SHARE 1e-3
-#define MAX_CARRIED_NEWTON_TOLERANCE 1e-9        /* of the extent: the largest one then */
+#define MAX_CARRIED_NEWTON_TOLERANCE 1e-7        /* of the extent: the largest one then */
 #define CARRIED_FIXED_NEWTON_SHARE 3e-3          /* of the last step's error: Newton's tolerance of a fixed step then */
 #define MAX_CARRIED_FIXED_NEWTON_TOLERANCE 1e-10 /* of the extent: the largest one of a fixed step then */
 
