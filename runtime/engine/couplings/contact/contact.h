@@ -155,12 +155,14 @@ double fu_contact_step(const fu_model *model, const fu_contact *contact, const f
                        const fu_contact_point *now, const fu_contact_point *next, double f[3], double friction[3],
                        double by_next[9], double by_stretch[9]);
 
-/* couplings/contact/heights.c: the penetrations of all points of an element, m, the largest of them, and their rates,
- * m/s; known of a cable on a plane that does not move, without friction. Then a point's contact by its height, as
- * fu_contact_is_active has it, without its position and velocity, whose part along the normal is in `past`. */
+/* couplings/contact/heights.c: the penetrations of all points of an element, m, and the largest of them; with the rates
+ * of its n nodal vectors along the normal and the points' shape functions (points x n), if that is positive. Known of a
+ * cable on a plane that does not move, without friction. Then a point's contact by its height, as fu_contact_is_active
+ * has it, without its position and velocity, whose part along the normal is in `past`. */
 typedef struct {
-    int is_known;
-    double normal[3], deepest, depth[FU_CONTACT_POINTS], sinking[FU_CONTACT_POINTS];
+    int is_known, n;
+    const double *N;
+    double normal[3], deepest, depth[FU_CONTACT_POINTS], rate[FU_MAX_COORDINATES];
 } fu_contact_heights;
 void fu_contact_compute_heights(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                                 const fu_state *state, int element, fu_contact_heights *out);
