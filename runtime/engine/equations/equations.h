@@ -20,6 +20,12 @@ void fu_add_matrix_without_cables(fu_run *run, fu_weights weights);
 void fu_static_move(fu_run *run, const double *change);
 void fu_static_residual(fu_run *run);
 
+/* equations/refinement.c: refines accelerations of a state without constraints until they satisfy eq 38 to 1e-9 of the
+ * forces; reaction: M q'' - Q on all dofs before and after, the force of the supports on those that are held. Returns
+ * nonzero if that takes more than two corrections. */
+int fu_refine_accelerations(const fu_model *model, const double *q, fu_accelerator *work, double *acceleration,
+                            double *reaction);
+
 /* equations/acceleration.c */
 int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work);
 int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration,

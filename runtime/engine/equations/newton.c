@@ -223,6 +223,7 @@ static int iterate_compensated(fu_run *run, const fu_newton *method, double h)
         if (leaves_little(run, size, contraction, after.gap)) {
             method->note_rest(run, h);
             count_for_matrix(run, i + 1, method->most_iterations / SLOW_ITERATION_FRACTION);
+            run->residual_at = run->next.t;
             return 0;
         }
         last = size;
@@ -241,6 +242,7 @@ int fu_newton_step(fu_run *run, const fu_newton *method, double h)
     const int stale = run->factored;
     int (*const solve)(fu_run *, const fu_newton *, double) =
         fu_compensates_residual(run) ? iterate_compensated : iterate;
+    run->residual_at = NAN;
     method->predict(run, h);
     if (!solve(run, method, h)) return 0;
     if (stale) { /* the matrix belonged to an earlier step: renew it before giving up */

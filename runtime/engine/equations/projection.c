@@ -132,6 +132,7 @@ int fu_coast(fu_run *run, double h)
     const fu_model *model = run->model;
     const fu_state *now = &run->now;
     fu_state *next = &run->next;
+    run->residual_at = NAN;
     fu_predict_internal(run, h);
     for (int i = 0; i < model->n_dof; ++i) {
         run->psi[i] = h * (now->v[i] + 0.5 * h * now->acceleration[i]);

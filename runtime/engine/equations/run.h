@@ -113,7 +113,9 @@ struct fu_run {
     double usual;       /* s: the intended step without events and output times */
     double ceiling;     /* s: upper bound of steps after a failed one */
     double matrix_cost; /* of the factored matrix and of its steps, in iterations */
+    double residual_at; /* s: where run->force is M q'' - Q of the state; NAN if nowhere */
     int matrix_steps;   /* number of these steps */
+    int mass_is_near;   /* the mass matrix of eq 38 has been factored at a row since the last pause */
     int factored;
     /* the step taken is shorter for an output time or a boundary of a path segment alone: no force changes faster in
      * it */

@@ -71,6 +71,8 @@ void fu_pause(fu_run *run)
 {
     run->factored = 0;
     run->h_factored = 0.0;
+    run->residual_at = NAN;
+    run->mass_is_near = 0;
     if (run->integrator->forget) run->integrator->forget(run);
     fu_evaluate_far_event_functions(run);
 }

@@ -4,7 +4,23 @@
 #include "equations/equations.h"
 #include "run/run.h"
 
+#include <math.h>
 #include <string.h>
+
+/* Computes accelerations and forces of supports at `now`, by eq 38; from the equations of the last step if Newton's
+ * method has evaluated them there. Returns 0 if there is one solution. */
+static int accelerate(fu_run *run, double *acceleration, double *reaction)
+{
+    const fu_model *model = run->model;
+    const fu_state *now = &run->now;
+    if (run->mass_is_near && fabs(now->t - run->residual_at) <= FU_AT_ONCE * run->duration) {
+        memcpy(acceleration, now->acceleration, sizeof(double) * (size_t)model->n_dof);
+        memcpy(reaction, run->force, sizeof(double) * (size_t)model->n_dof);
+        if (!fu_refine_accelerations(model, now->q, &run->accelerator, acceleration, reaction)) return 0;
+    }
+    run->mass_is_near = 1;
+    return fu_accelerations(model, now, &run->accelerator, acceleration, reaction);
+}
 
 /* Records `now` as a row. Returns FU_RUNNING; FU_SINGULAR or FU_UNSTABLE; or FU_NO_CONVERGENCE for a row that is not
  * finite, which does not count. */
@@ -20,7 +36,7 @@ int fu_record_row(fu_run *run)
     memcpy(r->q + row * model->n_q, now->q, sizeof(double) * (size_t)model->n_q);
     memcpy(r->v + row * model->n_dof, now->v, sizeof(double) * (size_t)model->n_dof);
     memcpy(r->s + row * model->n_coordinates, now->s, sizeof(double) * (size_t)model->n_coordinates);
-    const int info = fu_accelerations(model, now, &run->accelerator, acceleration, r->reaction + row * model->n_dof);
+    const int info = accelerate(run, acceleration, r->reaction + row * model->n_dof);
     r->kinetic[row] = fu_kinetic_energy_at(model, now);
     r->elastic[row] = fu_elastic_energy(model, now);
     r->potential[row] = fu_potential_energy(model, now->q) + fu_coupling_potential_energy(model, now);

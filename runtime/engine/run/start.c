@@ -25,6 +25,7 @@ int fu_start_scheme(fu_run *run, int project)
         if (fu_project_velocities(model, now, &run->accelerator, run->before)) return FU_SINGULAR;
         for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->before[i];
     }
+    run->residual_at = NAN;
     if (fu_complete(run, now)) return FU_SINGULAR;
     run->dissipated_power = fu_dissipated_power(run, now);
     run->external_power = fu_external_power(run, now, run->force);
