@@ -21,8 +21,10 @@ void fu_residual(fu_run *run, const fu_equations *at)
     const double begin = fu_clock();
     const fu_model *model = run->model;
     const fu_state *next = at->next;
-    if (at->weights.inertia != 0.0) fu_mass_times(model, next->q, next->acceleration, run->force);
-    else
+    if (at->weights.inertia != 0.0) {
+        fu_constant_mass_times(model, next->q, next->acceleration, run->force);
+        fu_coupling_inertia_beside_residuals(model, next->q, next->acceleration, run->force);
+    } else
         for (int i = 0; i < model->n_dof; ++i) run->force[i] = 0.0;
     fu_internal_forces(model, next->q, next->v, run->force);
     fu_external_forces(model, next->t, next->q, run->force);

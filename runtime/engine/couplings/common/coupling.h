@@ -76,6 +76,7 @@ typedef struct {
     /* Returns the kinetic energy of a state beyond that of its velocities, J: that of momenta which are history
      * variables of steps that conserve energy. Null: none. */
     double (*beyond_velocities)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+    int in_residual; /* `residual` contains M q'' as well */
 } fu_inertia_operations;
 
 /* A lower bound of the distance at which a coupling acts. Operations may be skipped until motions have exceeded it

@@ -111,6 +111,13 @@ void fu_coupling_inertia(const fu_model *model, const double *q, const double *a
         if (c->has_inertia) c->type->inertia->force(model, c, q, a, f);
 }
 
+/* Adds M a of the couplings whose residuals do not contain it. */
+void fu_coupling_inertia_beside_residuals(const fu_model *model, const double *q, const double *a, double *f)
+{
+    FU_EACH_COUPLING(c, model->always_active, model->n_inertial ? model->n_always_active : 0)
+        if (c->has_inertia && !c->type->inertia->in_residual) c->type->inertia->force(model, c, q, a, f);
+}
+
 void fu_coupling_masses(const fu_model *model, const double *q, double scale, fu_system *system)
 {
     FU_EACH_COUPLING(c, model->always_active, model->n_inertial ? model->n_always_active : 0)

@@ -143,8 +143,9 @@ static void force(const fu_model *model, const fu_coupling *coupling, const fu_s
 static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
                      double *internal)
 {
+    const fu_drag_sums sums = {.f = f};
     (void)internal;
-    force(model, coupling, at->next, f);
+    add_all(model, coupling, at->next, at->weights.inertia != 0.0 ? at->next->acceleration : 0, &sums);
 }
 
 static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
@@ -288,8 +289,10 @@ static const fu_field fields[] = {
     {0},
 };
 
-static const fu_inertia_operations inertia = {
-    .force = fu_added_mass_force, .matrix = fu_added_mass_matrix, .kinetic_energy = fu_added_mass_kinetic_energy};
+static const fu_inertia_operations inertia = {.force = fu_added_mass_force,
+                                              .matrix = fu_added_mass_matrix,
+                                              .kinetic_energy = fu_added_mass_kinetic_energy,
+                                              .in_residual = 1};
 static const fu_supply_operations supply = {.power = external_power, .step_work = step_work};
 
 typedef struct {
