@@ -90,6 +90,7 @@ struct fu_run {
     void *context;
     double *event_values;    /* per event function: its value at `now`, 0 just after its event */
     int *late;               /* per event function: the side to which it passed together with another event */
+    int may_be_late;         /* whether one of them may differ from zero */
     double *deferred_at;     /* per event function: time of a deferred event for the caller, s; negative for none */
     const char **deferred;   /* per event function: that event in words */
     fu_slackness *slackness; /* per cable */

@@ -287,7 +287,7 @@ void fu_evaluate_event_functions(fu_run *run, fu_event event, double h)
         const fu_event late = passes(run, k, value);
         if (expected || late.kind) run->event_values[k] = 0.0;
         else if (value != 0.0 && (moved || run->event_values[k] != 0.0)) run->event_values[k] = value;
-        if (!expected && late.kind) run->late[k] = late.side;
+        if (!expected && late.kind) fu_set_late(run, k, late.side);
     }
     run->event_solution = FU_SOLVE_ANEW;
 }
@@ -331,14 +331,21 @@ void fu_restart_event_functions(fu_run *run, int coupling)
     run->event_solution = FU_SOLVE_ANEW;
 }
 
+void fu_set_late(fu_run *run, int function, int side)
+{
+    run->late[function] = side;
+    run->may_be_late = 1;
+}
+
 /* Returns an event that passed together with another one, and is still to happen; none if there is none. */
 fu_event fu_late_event(fu_run *run)
 {
-    for (int k = 0; k < run->n_event_functions; ++k)
+    for (int k = 0; run->may_be_late && k < run->n_event_functions; ++k)
         if (run->late[k]) {
             const fu_event event = {FU_EVENT_FUNCTION, k, run->late[k], 0};
             run->late[k] = 0;
             return event;
         }
+    run->may_be_late = 0;
     return fu_no_event;
 }

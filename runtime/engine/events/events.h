@@ -16,6 +16,7 @@ enum { FU_SOLVE_ANEW = 0, FU_SOLVE_ONCE, FU_IS_SOLVED, FU_HAS_NO_SOLUTION };
 const double *fu_event_accelerations(const fu_run *run, const fu_state *state);
 
 fu_event fu_find_event(fu_run *run, fu_event but);
+void fu_set_late(fu_run *run, int function, int side); /* to which side it passed together with another event */
 fu_event fu_late_event(fu_run *run);
 double fu_locate(fu_run *run, fu_event event, double h);
 int fu_has_lost_an_event(fu_run *run);

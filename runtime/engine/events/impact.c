@@ -155,7 +155,7 @@ static int news_of(const fu_active_contacts *t, int k, const fu_hard_flags *flag
 static void let_happen(fu_run *run, const fu_coupling *coupling)
 {
     for (int k = 0; k < run->n_event_functions; ++k)
-        if (fu_event_coupling(run, k) == coupling && !run->event_functions[k].which) run->late[k] = 1;
+        if (fu_event_coupling(run, k) == coupling && !run->event_functions[k].which) fu_set_late(run, k, 1);
 }
 
 int fu_resolve_hard_contacts(fu_run *run, const fu_coupling *first, int yields)

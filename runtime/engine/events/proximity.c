@@ -99,15 +99,52 @@ static int stays_far(const fu_run *run, const fu_pair *pair)
     return pair->limit - used_by(p, pair, 0) > ahead + ROUNDING_OF_CLEARANCE * (ahead + run->extent);
 }
 
-/* Measures pairs at a state that may be near before the next search, or all of them, and records the far ones. */
-static void sort_pairs(fu_run *run, const fu_state *state, int all)
+/* Returns whether all pairs of one first part stay far: their margin exceeds what it and the carriers have moved since
+ * it was known, and may move until the next search. */
+static int group_stays_far(const fu_run *run, const fu_mover *mover)
+{
+    const fu_proximity *p = run->model->proximity;
+    const fu_pair_group *group = &mover->group;
+    const double used = mover->travelled - group->travelled + (p->carried - group->carried) +
+                        group->lever * (p->carried_turn - group->carried_turn);
+    const double ahead = mover->displacement + p->carrier_displacement + group->lever * p->carrier_turn;
+    return group->margin - used > ahead + ROUNDING_OF_CLEARANCE * (ahead + run->extent);
+}
+
+/* Measures the pairs of one first part that may be near before the next search, or all of them, and records the far
+ * ones; returns whether they are others than before. */
+static int sort_group(fu_run *run, fu_mover *mover, const fu_state *state, int all)
 {
     fu_proximity *p = run->model->proximity;
-    for (int k = 0; k < p->n_pairs; ++k) {
+    fu_pair_group *group = &mover->group;
+    int changed = 0;
+    group->travelled = mover->travelled;
+    group->carried = p->carried;
+    group->carried_turn = p->carried_turn;
+    group->margin = INFINITY;
+    group->lever = 0.0;
+    for (int k = group->first; k < group->first + group->n; ++k) {
         fu_pair *pair = &p->pairs[k];
         if (all || !stays_far(run, pair)) measure(run->model, pair, state);
-        p->is_far[pair->coupling] = (char)stays_far(run, pair);
+        const char is_far = (char)stays_far(run, pair);
+        changed |= is_far != p->is_far[pair->coupling];
+        p->is_far[pair->coupling] = is_far;
+        const double margin = pair->limit - used_by(p, pair, 0);
+        if (!(margin >= group->margin)) group->margin = margin;
+        group->lever = fmax(group->lever, pair->lever);
     }
+    return changed;
+}
+
+/* The same for all pairs. */
+static int sort_pairs(fu_run *run, const fu_state *state, int all)
+{
+    fu_proximity *p = run->model->proximity;
+    int changed = 0;
+    for (int m = 0; m < p->n_movers; ++m)
+        if (p->movers[m].group.n && (all || !group_stays_far(run, &p->movers[m])))
+            changed |= sort_group(run, &p->movers[m], state, all);
+    return changed;
 }
 
 /* Lists the near pairs. */
@@ -142,6 +179,8 @@ static void expect(const fu_model *model, const fu_state *state, double h, int s
                    const double *turns)
 {
     fu_proximity *p = model->proximity;
+    double carried = 0.0, carried_turn = 0.0;
+    p->carrier_displacement = p->carrier_turn = 0.0;
     for (int m = 0; m < p->n_movers; ++m) {
         fu_mover *mover = &p->movers[m];
         double speed, spin;
@@ -151,7 +190,14 @@ static void expect(const fu_model *model, const fu_state *state, double h, int s
         mover->turned += turns[m];
         mover->displacement = STEPS_PER_UPDATE * fmax(displacements[m] / steps, h * (speed + spin * mover->radius));
         mover->turn = STEPS_PER_UPDATE * fmax(turns[m] / steps, h * spin);
+        if (!mover->is_carrier) continue;
+        carried = fmax(carried, displacements[m]);
+        carried_turn = fmax(carried_turn, turns[m]);
+        p->carrier_displacement = fmax(p->carrier_displacement, mover->displacement);
+        p->carrier_turn = fmax(p->carrier_turn, mover->turn);
     }
+    p->carried += carried;
+    p->carried_turn += carried_turn;
 }
 
 void fu_search_near_pairs(fu_run *run, double h, int anew)
@@ -166,7 +212,6 @@ void fu_search_near_pairs(fu_run *run, double h, int anew)
     else if (!add_path_lengths(model, &run->now, displacements, turns) && p->age < MAX_STEPS_PER_UPDATE) return;
     expect(model, &run->now, run->fixed_step > 0.0 ? run->fixed_step : fmax(h, run->h), p->age, displacements, turns);
     memcpy(p->at, run->now.q, sizeof(double) * (size_t)model->n_q);
-    sort_pairs(run, &run->now, anew);
-    list_near(run);
+    if (sort_pairs(run, &run->now, anew) || anew) list_near(run);
     p->age = 0;
 }

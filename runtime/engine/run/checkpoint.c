@@ -171,6 +171,7 @@ int fu_restore(fu_run *run, const char *bytes, int rows)
     copier c = {(char *)bytes, 0, RESTORE};
     copy_all(&c, run);
     run->record.first = run->record.n;
+    run->may_be_late = 1;
     if (run->model->proximity) run->model->proximity->is_known = 0;
     return !(is_paused(run, rows) && fu_is_possible(run->model, &run->now) && fu_is_possible(run->model, &run->next) &&
              finite_state(run->model, &run->now) &&

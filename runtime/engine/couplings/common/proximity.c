@@ -4,8 +4,9 @@
  * up. Path lengths are summed from search to search. Between two searches each cable and body may move as far as
  * expected in some steps, which is subtracted from the clearances beforehand. So a state needs only its distance
  * from the configuration of the last search, cable by cable and body by body: if one has moved farther, all
- * couplings are evaluated. Skipped couplings would contribute nothing, and the others keep their order: results do
- * not depend on the times of searches. */
+ * couplings are evaluated. A search itself visits only the cables and bodies one of whose pairs, as their first part,
+ * may have become near. Skipped couplings would contribute nothing, and the others keep their order: results do not
+ * depend on the times of searches. */
 #include "couplings/common/coupling_events.h"
 #include "couplings/common/couplings.h"
 #include "couplings/common/proximity.h"
@@ -51,25 +52,51 @@ double fu_most_of_cable(const fu_cable *cable, const double *to, const double *f
     return sum;
 }
 
+/* Returns the square of a body's displacement since the last search. */
+static inline double square_of_displacement(const fu_model *model, const fu_body *body, const double *q)
+{
+    const double *b = q + body->configuration, *b0 = model->proximity->at + body->configuration;
+    double square = 0.0;
+    for (int i = 0; i < model->dim; ++i) square += (b[i] - b0[i]) * (b[i] - b0[i]);
+    return square;
+}
+
+/* Returns the square of the change of a body's axes since the last search, 0 for a body that is not the second part of
+ * a pair: spheres about the origin of a first part contain its points in any axes. */
+static inline double square_of_turn(const fu_model *model, const fu_mover *mover, const fu_body *body, const double *q)
+{
+    const double *b = q + body->configuration, *b0 = model->proximity->at + body->configuration;
+    const int n = mover->is_carrier ? body->kernel->configuration : 0;
+    double square = 0.0;
+    for (int i = model->dim; i < n; ++i) square += (b[i] - b0[i]) * (b[i] - b0[i]);
+    return square;
+}
+
 /* Computes the distance of a moving part from its position at the last search, m, and the norm of the change of its
  * axes. */
 void fu_mover_gone_by(const fu_model *model, int mover, const double *q, double *displacement, double *turn)
 {
+    const fu_proximity *p = model->proximity;
     const fu_body *body = fu_body_of_mover(model, mover);
-    const double *from = model->proximity->at;
     *turn = 0.0;
     if (!body) {
-        *displacement = fu_most_of_cable(&model->cables[mover], q, from);
+        *displacement = fu_most_of_cable(&model->cables[mover], q, p->at);
         return;
     }
-    const double *b = q + body->configuration, *b0 = from + body->configuration;
-    double square = 0.0, turned = 0.0;
-    for (int i = 0; i < body->kernel->configuration; ++i) {
-        const double change = b[i] - b0[i];
-        *(i < model->dim ? &square : &turned) += change * change;
-    }
-    *displacement = sqrt(square);
-    *turn = 2.0 * sqrt(turned); /* of unit quaternions at an angle of a/2: 2 sin(a/2) <= 2 |e - e0| */
+    *displacement = sqrt(square_of_displacement(model, body, q));
+    /* of unit quaternions at an angle of a/2: 2 sin(a/2) <= 2 |e - e0| */
+    *turn = 2.0 * sqrt(square_of_turn(model, &p->movers[mover], body, q));
+}
+
+/* Returns whether a moving part is within its limits from the last search. */
+static int is_within(const fu_model *model, int number, const double *q)
+{
+    const fu_mover *mover = &model->proximity->movers[number];
+    const fu_body *body = fu_body_of_mover(model, number);
+    const double displacement = mover->displacement, turn = 0.5 * mover->turn;
+    if (!body) return fu_most_of_cable(&model->cables[number], q, model->proximity->at) <= displacement;
+    return square_of_displacement(model, body, q) <= displacement * displacement &&
+           square_of_turn(model, mover, body, q) <= turn * turn;
 }
 
 /* Returns whether all moving parts are within their limits from the last search. */
@@ -77,12 +104,8 @@ int fu_movers_are_near(const fu_model *model, const double *q)
 {
     const fu_proximity *p = model->proximity;
     if (!p || !p->is_known) return 0;
-    for (int m = 0; m < p->n_movers; ++m) {
-        double displacement, turn;
-        if (!p->movers[m].pairs) continue;
-        fu_mover_gone_by(model, m, q, &displacement, &turn);
-        if (!(displacement <= p->movers[m].displacement && turn <= p->movers[m].turn)) return 0;
-    }
+    for (int m = 0; m < p->n_movers; ++m)
+        if (p->movers[m].pairs && !is_within(model, m, q)) return 0;
     return 1;
 }
 
@@ -115,9 +138,34 @@ fu_couplings fu_acting_in_step(const fu_model *model, const fu_equations *at)
 }
 
 /* Adds a cable or body to the moving parts, if its motion can be bounded. */
-static void add_mover(const fu_model *model, fu_proximity *p, int mover)
+static void add_mover(const fu_model *model, fu_proximity *p, int mover, int is_second)
 {
-    if (mover >= 0 && (mover >= model->n_cables || model->cables[mover].share)) ++p->movers[mover].pairs;
+    if (mover < 0 || (mover < model->n_cables && !model->cables[mover].share)) return;
+    ++p->movers[mover].pairs;
+    p->movers[mover].is_carrier |= is_second;
+}
+
+/* Lists the pairs by their first parts. */
+static void group_pairs(const fu_model *model, fu_proximity *p)
+{
+    int between[2];
+    FU_EACH_COUPLING(c, model->couplings, model->n_couplings) {
+        if (!c->type->proximity) continue;
+        c->type->proximity->between(model, c, between);
+        ++p->movers[between[0]].group.n;
+        for (int i = 0; i < 2; ++i) add_mover(model, p, between[i], i);
+    }
+    for (int m = 0; m < p->n_movers; ++m) {
+        p->movers[m].group.first = p->n_pairs;
+        p->n_pairs += p->movers[m].group.n;
+        p->movers[m].group.n = 0;
+    }
+    FU_EACH_COUPLING(c, model->couplings, model->n_couplings) {
+        if (!c->type->proximity) continue;
+        c->type->proximity->between(model, c, between);
+        fu_pair_group *group = &p->movers[between[0]].group;
+        p->pairs[group->first + group->n++] = (fu_pair){.between = {between[0], between[1]}, .coupling = c->number};
+    }
 }
 
 /* Takes the next n bytes of a block of memory, aligned to 16; only counts them if it is null. */
@@ -156,12 +204,6 @@ void fu_proximity_place(fu_model *model, int n_event_functions, void *memory)
 {
     fu_proximity *p = model->proximity = memory;
     place(model, n_event_functions, memory, p);
-    FU_EACH_COUPLING(c, model->couplings, model->n_couplings) {
-        p->is_alone[c->number] = (char)fu_acts_alone(c);
-        if (!c->type->proximity) continue;
-        fu_pair *pair = &p->pairs[p->n_pairs++];
-        pair->coupling = c->number;
-        c->type->proximity->between(model, c, pair->between);
-        for (int i = 0; i < 2; ++i) add_mover(model, p, pair->between[i]);
-    }
+    FU_EACH_COUPLING(c, model->couplings, model->n_couplings) p->is_alone[c->number] = (char)fu_acts_alone(c);
+    group_pairs(model, p);
 }

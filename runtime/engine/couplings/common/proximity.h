@@ -6,11 +6,20 @@
 #include "bodies/model.h"
 #include "couplings/common/coupling.h"
 
+/* Pairs of one first part, from `first` on: the least of their limits beyond the motion of their parts, m, and the
+ * largest lever, m, where these were last compared; the total motion of the first part and of carriers there. */
+typedef struct {
+    int first, n;
+    double margin, lever, travelled, carried, carried_turn;
+} fu_pair_group;
+
 /* A cable or a body: limits of its displacement, m, and rotation since the last search before far pairs may be near;
  * its total displacement and rotation until then; the largest radius of its points. */
 typedef struct {
     double displacement, turn, travelled, turned, radius;
-    int pairs; /* number of its pairs */
+    int pairs;      /* number of its pairs */
+    int is_carrier; /* it is the second part of one */
+    fu_pair_group group;
 } fu_mover;
 
 /* A coupling with a clearance: total motion of its parts at which it is measured again. */
@@ -24,8 +33,11 @@ struct fu_proximity {
     int n_movers, n_pairs, n_near, n_near_functions;
     int is_known, age; /* the lists belong to a configuration; steps since then */
     double *at;        /* that configuration */
+    /* of the second parts of all pairs: the sums over searches of the largest displacement and rotation, and the
+     * largest limits of both until the next search */
+    double carried, carried_turn, carrier_displacement, carrier_turn;
     fu_mover *movers;
-    fu_pair *pairs;
+    fu_pair *pairs;           /* in order of their first parts */
     double *displacements;    /* work space: 2 x n_movers */
     char *is_far, *is_alone;  /* of each coupling; is_alone: fu_acts_alone */
     const fu_coupling **near; /* those that may act while no part has exceeded its limit, in their order */
