@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from typing import Any
 
@@ -80,12 +80,11 @@ def check_of(part: Part) -> Callable[[SceneData, Any], Any]:
     return _check_of(type(part))
 
 
-def check_all_of(part: Part) -> Callable[[SceneData, Any], Any]:
-    """Return the same function for a list of parts like this one."""
-    check = check_of(part)
-    if check is placed_contact:
-        return placed_contacts
-    return lambda scene, parts: [check(scene, each) for each in parts]
+def check_all_of(scene: SceneData, part: Part, names: Iterable[Mapping[str, Any]]) -> list[Any]:
+    """Check parts like this one but for their names, and return them complete."""
+    if isinstance(part, Contact):
+        return placed_contacts(scene, part, names)
+    return [check_of(part)(scene, part.model_copy(update=each)) for each in names]
 
 
 @cache

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -57,27 +57,49 @@ def placed_surface(scene: SceneData, surface: Surface) -> Surface:
 
 def placed_contact(scene: SceneData, contact: Contact) -> Contact:
     """Return the contact complete and checked to be open at the start. Raises SceneError."""
-    return placed_contacts(scene, [contact])[0]
+    return placed_contacts(scene, contact, [{}])[0]
 
 
-def placed_contacts(scene: SceneData, contacts: list[Contact]) -> list[Contact]:
-    """Return contacts as `placed_contact` does, with one evaluation of each surface. Raises SceneError."""
+def placed_contacts(scene: SceneData, one: Contact, names: Iterable[Mapping[str, Any]]) -> list[Contact]:
+    """Return contacts as `placed_contact` does, with one evaluation of each surface and of what a cable or body adds.
+
+    names: what differs from one in each, of its name and both sides. Raises SceneError.
+    """
     made: list[Contact] = []
     starts: list[_Start] = []
     own: dict[tuple[str, str], Contact] = {}
-    known = scene.contact_of_pair
-    for contact in contacts:
-        contact = _of_surface(scene, contact, known, own)
-        made.append(_complete(scene, contact))
-        _check_fits(scene, made[-1])
+    known, complete = scene.contact_of_pair, dict[str, Contact]()
+    for each in names:
+        contact = _like(scene, complete, each, known, own)
+        if contact is None:
+            contact = _complete(scene, _of_surface(scene, one.model_copy(update=each), known, own))
+            if contact.a not in scene.ropes:
+                complete[contact.a] = contact
+        made.append(contact)
+        _check_fits(scene, contact)
         own[contact.a, contact.b] = contact
-        starts.append(_start_of(scene, made[-1], starts[-1] if starts else None))
-    n_hard = sum(_hard_points(scene, contact) for contact in made if contact.is_hard)
-    for contact in made:
-        if contact.is_hard:
+        starts.append(_start_of(scene, contact, starts[-1] if starts else None))
+    if one.is_hard:
+        n_hard = sum(_hard_points(scene, contact) for contact in made)
+        for contact in made:
             _check_hard(scene, contact, n_hard)
     _check_penetrations(scene, made, starts)
     return made
+
+
+def _like(scene: SceneData, complete: Mapping[str, Contact], names: Mapping[str, Any],
+          *pairs: Mapping[tuple[str, str], Any]) -> Contact | None:
+    """Return a contact like that of the same cable or body with another surface; None without one, and for names that
+    are not valid.
+    """
+    a, b = names.get("a"), names.get("b")
+    if a in scene.surfaces and b not in scene.surfaces:
+        a, b = b, a
+    if (like := complete.get(a or "")) is None or (surface := scene.surfaces.get(b or "")) is None:
+        return None
+    if surface.on == a or any((a, b) in pairs_of for pairs_of in pairs):
+        return None
+    return like.model_copy(update={**names, "a": a, "b": b})
 
 
 def _of_surface(scene: SceneData, contact: Contact, known: Mapping[tuple[str, str], str],

@@ -156,19 +156,31 @@ class Part(BaseModel, metaclass=_TranslatingType):
         return {keyword: value for keyword, value in {**self.as_made().entries(), **changes}.items()
                 if value is not None}
 
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Return a copy with other values of fields, which count as given, in a quarter of the time of pydantic's,
+        which allows for entries beside the fields.
+        """
+        if deep or self.__pydantic_private__ is not None:
+            return super().model_copy(update=update, deep=deep)
+        return self._copied(update or {}, self.__pydantic_fields_set__.union(update or ()))
+
     def __copy__(self) -> Self:
-        """Return a copy. It takes a third of the time of pydantic's, which allows for entries beside the fields."""
-        if self.__pydantic_private__ is not None:
-            return super().__copy__()
-        made, put = type(self).__new__(type(self)), object.__setattr__
-        put(made, "__dict__", {**self.__dict__})
-        put(made, "__pydantic_fields_set__", {*self.__pydantic_fields_set__})
+        """Return a copy."""
+        return self.model_copy() if self.__pydantic_private__ is None else super().__copy__()
+
+    def _copied(self, update: Mapping[str, Any], given: set[str]) -> Self:
+        """Return a copy with other values; given: the fields that were given."""
+        made, put = object.__new__(type(self)), object.__setattr__
+        put(made, "__dict__", {**self.__dict__, **update})
+        put(made, "__pydantic_fields_set__", given)
         put(made, "__pydantic_extra__", None)
         put(made, "__pydantic_private__", None)
         return made
 
     def completed(self, found: Mapping[str, Any]) -> Self:
         """Return this part with values, by field, that its scene found; they count as not given."""
+        if self.__pydantic_private__ is None:
+            return self._copied(found, {*self.__pydantic_fields_set__})
         made = self.model_copy(update=dict(found))
         made.model_fields_set.intersection_update(self.model_fields_set)
         return made

@@ -62,13 +62,13 @@ class DescribedScene(SceneMethods):
         pairs = pairs_of(self, kind, entries)
         ends, given = kind.positional, entries.get("name")
         one = kind(**{**entries, **dict(zip(ends, pairs[0], strict=True))})
-        names = self.free_names(kind, kind.kind if given is None else given, len(pairs))
-        parts = [one.model_copy(update={**dict(zip(ends, pair, strict=True)), "name": name})
-                 for pair, name in zip(pairs, names, strict=True)]
+        numbered = self.free_names(kind, kind.kind if given is None else given, len(pairs))
+        names = [{ends[0]: a, ends[1]: b, "name": name} for (a, b), name in zip(pairs, numbered, strict=True)]
         check_plane(self, one)
-        for part in parts:
-            check_apart_from_ropes(self, part)
-        parts = cast(list[P], check_all_of(one)(self, parts))
+        if self.ropes:
+            for each in names:
+                check_apart_from_ropes(self, one.model_copy(update=each))
+        parts = cast(list[P], check_all_of(self, one, names))
         for part in parts:
             self.put(part)
         return parts
