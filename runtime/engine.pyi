@@ -29,6 +29,7 @@ class Output(NamedTuple):
     turns: str
 
 def outputs_by_name(kind: str, numbers: np.ndarray) -> dict[str, np.ndarray]: ...
+def slope_lengths(shapes: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray: ...
 
 class Engine:
     arrays: dict[str, np.ndarray]

@@ -13,7 +13,7 @@ import numpy as np
 from cpython.exc cimport PyErr_CheckSignals
 from cpython.mem cimport PyMem_Calloc, PyMem_Free
 from cpython.pycapsule cimport PyCapsule_GetName, PyCapsule_GetPointer
-from libc.math cimport M_PI_2
+from libc.math cimport M_PI_2, sqrt
 from libc.stdlib cimport calloc, free, realloc
 from libc.string cimport memcpy
 
@@ -147,6 +147,7 @@ cdef double _call(void *context, int which, const fu_state *state) noexcept with
         return 0.0
 
 
+include "engine/cython/slopes.pxi"
 include "engine/cython/arrays.pxi"
 include "engine/cython/translation.pxi"
 include "engine/cython/statics.pxi"

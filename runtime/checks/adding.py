@@ -52,9 +52,10 @@ def placed_cable(scene: SceneData, cable: Cable) -> Cable:
                 f'but cable "{other.name}" in {called(other.plane)}, with that at {show(other.normal)} x tangent',
                 "draw both in one plane, and give up, on the same side of it")
     check_beside_ropes(scene, cable)
-    others = scene.copied()
-    others.put(cable)
-    check_plane(others)
+    if 2 in (cable.dim, scene.dim):
+        others = scene.copied()
+        others.put(cable)
+        check_plane(others)
     return cable
 
 

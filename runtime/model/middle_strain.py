@@ -7,6 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from ..engine import slope_lengths
 from ..kernels.libraries import kernels_of
 from .model import CableModel
 
@@ -40,8 +41,9 @@ def stretches(cable: CableModel, first: np.ndarray, last: np.ndarray, element: n
     """
     parts, weights = rule
     shapes = slopes(cable, *parts)
-    lengths = _lengths(_summed(shapes if shapes.shape[1] == 1 else shapes[:, element], first, last))
-    return np.asarray(np.einsum("p,p...->...", weights, lengths))
+    in_rows = first.reshape(-1, *first.shape[-3:]), last.reshape(-1, *last.shape[-3:])
+    lengths = slope_lengths(shapes if shapes.shape[1] == 1 else shapes[:, element], *in_rows)
+    return np.asarray(np.einsum("p,p...->...", weights, lengths)).reshape(first.shape[:-2])
 
 
 def middle_strain(cable: CableModel, nodal_vectors: np.ndarray) -> np.ndarray:
@@ -55,26 +57,16 @@ def middle_strain(cable: CableModel, nodal_vectors: np.ndarray) -> np.ndarray:
 
 def strains_at(cable: CableModel, nodal_vectors: np.ndarray, parts: Sequence[float]) -> np.ndarray:
     """Return (parts, T, elements): the axial strain at fractions of the length of each element."""
-    return _lengths(slopes_at(nodal_vectors, slopes(cable, *parts))) - 1.0
+    return slope_lengths(slopes(cable, *parts), nodal_vectors[:, :-1], nodal_vectors[:, 1:]) - 1.0
 
 
 def slopes_at(nodal_vectors: np.ndarray, shapes: np.ndarray) -> np.ndarray:
     """Return (parts, T, elements, dim): the sums of the vectors of each element's nodes, weighted as `slopes` returns.
-    """
-    return _summed(shapes, nodal_vectors[:, :-1], nodal_vectors[:, 1:])
 
-
-def _summed(shapes: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
-    """Return (parts, ..., n, dim): sums of the vectors of nodes (..., n, vectors, dim), weighted by shapes (parts, 1 or
-    n, vectors of two nodes). Products of whole arrays take a third of the time of `numpy.einsum` for few elements.
+    Products of whole arrays take a third of the time of `numpy.einsum` for few elements.
     """
-    vectors, free = first.shape[-2], (1,) * (first.ndim - 3)
-    N, counted = shapes.reshape(len(shapes), *free, *shapes.shape[1:], 1), np.any(shapes, axis=(0, 1))
+    first, last, vectors = nodal_vectors[:, :-1], nodal_vectors[:, 1:], nodal_vectors.shape[-2]
+    N, counted = shapes.reshape(len(shapes), 1, *shapes.shape[1:], 1), np.any(shapes, axis=(0, 1))
     ends = (sum(N[..., offset + k, :] * end[..., k, :] for k in range(vectors) if counted[offset + k])
             for offset, end in ((0, first), (vectors, last)))
     return np.asarray(sum(ends))
-
-
-def _lengths(vectors: np.ndarray) -> np.ndarray:
-    """Return the lengths (...) of vectors (..., dim)."""
-    return np.asarray(np.sqrt(np.add.reduce(vectors * vectors, axis=-1)))

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..base.rotations import sizes
 from ..engine import OUTPUTS, Engine, outputs_by_name
 from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
@@ -148,7 +149,7 @@ def _slides(model: Model, at: States, kind: str, asked: Asked) -> Values:
     found: Values = {}
     for k, slide in enumerate(model.slides):
         outputs = at.outputs(kind, k)
-        found[slide.name] = {"s": at.s[:, k]} | outputs | {"residual": np.linalg.norm(outputs["residual"], axis=-1)}
+        found[slide.name] = {"s": at.s[:, k]} | outputs | {"residual": sizes(outputs["residual"])}
     for k, joint in enumerate(model.joints):
         if joint.slide is not None:
             found[joint.slide]["moment"] = joint_state(joint, at.outputs("joint", k))["moment"]

@@ -264,10 +264,15 @@ class DrawnCable(Fields):
         """Return the number of the node at arc-length ``s`` in m, else None; a cable without mesh gets one anywhere."""
         if self.is_open:
             return round(s / (LENGTH_TOLERANCE * self.length))
-        mesh, length, elements = self.mesh, self.length, self.elements
-        node = round(s / length * elements) if mesh.is_even else int(mesh.nearest_node(s))
-        on_node = 0 <= node <= elements and abs(self.node_s[node] - s) <= LENGTH_TOLERANCE * length
-        return node if on_node else None
+        length, elements = self.length, self.elements
+        if self.nodes is None:  # equal elements, whose nodes need no arrays
+            node = round(s / length * elements)
+            at = length * node / elements  # as in `node_s`
+        else:
+            mesh = self.mesh
+            node = round(s / length * elements) if mesh.is_even else int(mesh.nearest_node(s))
+            at = self.node_s[node] if 0 <= node <= elements else 0.0
+        return node if 0 <= node <= elements and abs(at - s) <= LENGTH_TOLERANCE * length else None
 
     def element_at(self, s: float) -> int:
         """Return the number of the element at arc-length ``s`` in m."""

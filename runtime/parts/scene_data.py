@@ -124,8 +124,9 @@ class SceneData:
             self.gravity = vector(gravity, "m/s²")
         except ValueError as error:
             raise SceneError("scene", f"gravity {error}") from None
-        for kind in KINDS:
-            vars(self)[kind.group] = PartsByName() if kind.is_named() else PartsInOrder()
+        held = vars(self)
+        for group, holder in _holders().items():
+            held[group] = holder()
         self._contact_of_pair: dict[tuple[str, str], str] = {}
         self.messages: list[str] = []
         self.title = ""
@@ -241,9 +242,11 @@ class SceneData:
 
     def _names_beside(self, group: str) -> list[dict[str, Part]]:
         """Return the groups that share the space of names of a group."""
-        groups = ("events",) if group == "events" else [each for each in _groups() if each != "events"]
-        found = [parts for each in groups if isinstance(parts := getattr(self, each), dict) and parts]
-        if group != "events" and self.ropes:
+        if group == "events":
+            return [self.events] if self.events else []
+        held = vars(self)
+        found = [parts for each in _named_groups() if (parts := held[each])]
+        if self.ropes:
             found.append({each.given_name or "": each for rope in self.ropes.values() for each in rope.named_within()})
         return found
 
@@ -293,7 +296,8 @@ class SceneData:
     def copied(self) -> Self:
         """Return a scene of the same parts, to which parts can be added independently."""
         made = copy(self)
-        vars(made).update((name, value.copy()) for name, value in vars(self).items() if isinstance(value, dict | list))
+        held = vars(made)
+        held.update({name: value.copy() for name, value in held.items() if isinstance(value, dict | list)})
         return made
 
     def replaced(self, made: Callable[[Part], Part]) -> Self:
@@ -361,3 +365,15 @@ def _views() -> dict[str, type[Part]]:
 def _groups() -> tuple[str, ...]:
     """Return the groups in an order in which their parts can be added."""
     return tuple(dict.fromkeys(kind.group for kind in KINDS))
+
+
+@cache
+def _holders() -> dict[str, type[PartsByName | PartsInOrder]]:
+    """Return the class that holds the parts of each group."""
+    return {kind.group: PartsByName if kind.is_named() else PartsInOrder for kind in KINDS}
+
+
+@cache
+def _named_groups() -> tuple[str, ...]:
+    """Return the groups of parts with names, without events, which have a space of names of their own."""
+    return tuple(group for group, holder in _holders().items() if holder is PartsByName and group != "events")

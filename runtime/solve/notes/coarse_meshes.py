@@ -17,6 +17,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ...base.rotations import sizes
 from ...kernels.mesh import Mesh
 from ...model.middle_strain import gauss_rule, strains_at
 from ...model.model import CableModel, Model
@@ -128,7 +129,7 @@ class _Line:
         if len(self.strains) == 1:
             force, along = (np.add.reduceat(each[0], self.ends[:-1], axis=1) for each in (forces, length))
             r = self.strains[0].cable.positions(q)[:, self.ends]
-            apart = np.linalg.norm(r[:, 1:] - r[:, :-1], axis=-1)
+            apart = sizes(r[:, 1:] - r[:, :-1])
         else:
             force, along = (sum(part.sum(axis=1, keepdims=True) for part in each) for each in (forces, length))
             r = np.concatenate([each.cable.positions(q)[:, each.supported] for each in self.strains], axis=1)

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...base.rotations import sizes
 from ...engine import outputs_by_name
 from ...model.middle_strain import middle_strain
 from ...model.model import SlideModel
@@ -61,7 +62,7 @@ class CoarseSlides(Note):
         """Measure further output rows."""
         if not self.model.slides:
             return
-        forces = np.linalg.norm(outputs_by_name("slide", rows["slide"])["force"], axis=-1)
+        forces = sizes(outputs_by_name("slide", rows["slide"])["force"])
         for k, (slide, force) in enumerate(zip(self.model.slides, forces.T, strict=True)):
             numbers, h = self._of(slide, rows["q"], rows["s"][:, k], force)
             count, sums, longest = self.found.get(slide.name, (0, [0.0, 0.0, 0.0], 0.0))

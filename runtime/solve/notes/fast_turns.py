@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from .note import Note, Rows
+from ...base.rotations import sizes
+from .note import Note, Rows, intervals
 
 MAX_TURN_PER_STEP = 1.0
 """Turn in rad per step beyond which the method does not resolve the motion of the axes."""
@@ -20,15 +19,16 @@ class FastTurns(Note):
 
     def see(self, rows: Rows) -> None:
         """Measure further output rows."""
+        time, size = rows["time"], 3 if self.model.dim == 3 else 1
         for body in self.model.bodies:
             first = body.dof + self.model.dim
-            rates = np.linalg.norm(rows["v"][:, first : first + (3 if self.model.dim == 3 else 1)], axis=1)
+            rates = sizes(rows["v"][:, first : first + size])
             angle, at, cubes, until = self.found.get(body.name, (0.0, 0.0, 0.0, 0.0))
-            k = int(np.argmax(rates))
+            k = int(rates.argmax())
             if self.step * rates[k] > angle:
-                angle, at = float(self.step * rates[k]), float(rows["time"][k])
-            cubes += float(rates**3 @ np.diff(rows["time"], prepend=until))
-            self.found[body.name] = [angle, at, cubes, float(rows["time"][-1])]
+                angle, at = float(self.step * rates[k]), float(time[k])
+            cubes += float(rates**3 @ intervals(time, until))
+            self.found[body.name] = [angle, at, cubes, float(time[-1])]
 
     def notes(self) -> list[str]:
         """Return a note for each body that turned too fast for a fixed step."""

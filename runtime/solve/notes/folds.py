@@ -13,6 +13,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ...base.rotations import sizes
 from ...engine import Engine
 from ...model.middle_strain import gauss_rule, slopes, slopes_at, stretches
 from ...model.model import CableModel
@@ -113,4 +114,4 @@ def _turns(cable: CableModel, nodal: np.ndarray) -> np.ndarray:
 
 def _chords(r: np.ndarray) -> np.ndarray:
     """Return (..., elements): distances in m of consecutive nodes (..., nodes, dim)."""
-    return np.asarray(np.linalg.norm(r[..., 1:, :] - r[..., :-1, :], axis=-1))
+    return sizes(r[..., 1:, :] - r[..., :-1, :])

@@ -91,6 +91,14 @@ def element_place(cable: CableModel, k: int) -> str:
     return f"element {k}, from s = {start:.6g} m to {start + cable.mesh.length(k):.6g} m"
 
 
+def intervals(time: np.ndarray, before: float) -> np.ndarray:
+    """Return (T,): the times in s from each output row to the next one, to the first one from that before it."""
+    found = time.copy()
+    found[0] -= before
+    found[1:] -= time[:-1]
+    return found
+
+
 def allowed_error(engine: Engine, settings: RunSettings) -> float:
     """Return the error in m that a run allows: by tol, or with a fixed step by the limit of notes."""
     if settings.step is not None:

@@ -17,7 +17,7 @@ from .coincident_points import CoincidentPoints
 from .fast_turns import FastTurns
 from .fleet_angles import FleetAngles
 from .folds import Folds
-from .note import Note
+from .note import Note, Rows
 from .penetrations import Penetrations
 from .reduced_strain import ReducedStrain
 from .sensitivity import Sensitivity
@@ -34,9 +34,21 @@ NOTES: tuple[type[Note], ...] = (
     CoincidentPoints, FastTurns, NormalForces, SpinningSections, Penetrations, SurfaceEnds, CoarseContact,
     FleetAngles, SlackRopes)
 
-ROW_INTERVALS = {note.row_interval for note in NOTES}
-
 N = TypeVar("N", bound=Note)
+
+
+class _Thinned(dict[str, np.ndarray]):
+    """One in a number of output rows, of the arrays that a note reads."""
+
+    def __init__(self, rows: Rows, begin: int, interval: int):
+        """begin: the first row."""
+        super().__init__()
+        self._rows, self._taken = rows, slice(begin, None, interval)
+
+    def __missing__(self, name: str) -> np.ndarray:
+        """Return these rows of an array, which is kept."""
+        self[name] = found = self._rows[name][self._taken]
+        return found
 
 
 class RowNotes:
@@ -54,13 +66,15 @@ class RowNotes:
     def see(self, engine: Engine) -> None:
         """Measure the rows that the engine has, and the ends of its steps."""
         rows = engine.rows()
-        found = {interval: {name: values[(1 - self._rows) % interval :: interval] for name, values in rows.items()}
-                 for interval in ROW_INTERVALS}
-        self._rows += len(rows["time"])
+        found = {1: rows}
         for note in self._notes.values():
             note.see_steps(engine)
-            if len(found[note.row_interval]["time"]):
-                note.see(found[note.row_interval])
+            interval = note.row_interval
+            if interval not in found:
+                found[interval] = _Thinned(rows, (1 - self._rows) % interval, interval)
+            if len(found[interval]["time"]):
+                note.see(found[interval])
+        self._rows += len(rows["time"])
 
     def notes(self) -> list[str]:
         """Return the notes on all rows and steps."""

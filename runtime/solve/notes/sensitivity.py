@@ -22,7 +22,7 @@ from ...model.states import attachment_points, body_rates, body_state, joint_sta
 from ...parts.cable import Cable
 from ...parts.section_stiffness import compressive_stiffness
 from ...parts.settings import RunSettings
-from .note import LineStiffness, Note, Rows, allowed_error
+from .note import LineStiffness, Note, Rows, allowed_error, intervals
 
 SIMPSON_RULE = (0.0, 0.5, 1.0), (1 / 6, 4 / 6, 1 / 6)
 """Simpson's rule on an element, as fractions of its length; the factors of the exponents below were measured with
@@ -82,7 +82,7 @@ class Sensitivity(Note):
         """Add rates (times, exponents) in 1/s to the exponents of a part."""
         exponents, until, since, rows = self.found.get(name, ([0.0] * rates.shape[1], 0.0, -1.0, 0))
         if rates.any():
-            grown = np.array(exponents) + np.cumsum(rates * np.diff(time, prepend=until)[:, None], axis=0)
+            grown = np.array(exponents) + np.cumsum(rates * intervals(time, until)[:, None], axis=0)
             begun = np.flatnonzero(grown.max(axis=1) > MIN_GROWTH_EXPONENT)
             if since < 0 and len(begun):
                 since = float(time[begun[0]])

@@ -35,8 +35,8 @@ class StraightStruts(Note):
             r = cable.positions(rows["q"])
             before, worst = self.found.get(cable.name, (False, None))
             straight = _straight(r, before)
-            at = np.flatnonzero(straight & np.append(before, straight[:-1]))  # else something bends it
-            if len(at):
+            if straight.any() and len(at := np.flatnonzero(straight & np.append(before, straight[:-1]))):
+                # at two times: else something bends it
                 shortening = 1 - np.linalg.norm(np.diff(r[at], axis=1), axis=2) / cable.mesh.lengths
                 stiffness = compressive_stiffness(part.traits.membrane, part.section, part.material)
                 forces = stiffness * shortening.max(axis=1)
@@ -73,9 +73,11 @@ def _straight(r: np.ndarray, before: bool) -> np.ndarray:
     The middle node excludes most states; all nodes are compared in the others only.
     """
     chord, middle = r[:, -1] - r[:, 0], r[:, r.shape[1] // 2] - r[:, 0]
-    square = (chord * chord).sum(axis=1)
-    deflection = (middle * middle).sum(axis=1) * square - (middle * chord).sum(axis=1) ** 2  # squared, times square
+    square, other, product = (np.add.reduce(each, axis=1) for each in (chord * chord, middle * middle, middle * chord))
+    deflection = other * square - product**2  # squared, times square
     straight = ~(deflection > MIN_SQUARED_DEFLECTION * square**2)
+    if not straight.any():
+        return np.asarray(straight)
     beside = np.ones(len(r), dtype=bool)  # the last time is compared with the row to come
     beside[:-1] = straight[1:]
     beside[1:] |= straight[:-1]
