@@ -3,7 +3,34 @@
 from types import SimpleNamespace
 
 import numpy as np
+from funicular.results.quantities import Variable, labelled
 from funicular.scene.scene import Scene
+
+
+class FakeRecording(SimpleNamespace):
+    """A `funicular.results.recording.Recording` of given arrays."""
+
+    scene = None
+
+    def variables(self, alone=None):
+        """Return the labelled results; all of them, also of one part."""
+        return labelled(self)
+
+    @property
+    def rows(self):
+        """Return the rows of an engine that the code around a recording reads."""
+        return {"time": self.time}
+
+    @property
+    def coords(self):
+        """Return the labelled coordinates."""
+        found = {"time": Variable(("time",), self.time, "s", "time"),
+                 "xyz": Variable(("xyz",), np.array(["x", "y", "z"]), "1", "axis")}
+        for name, cable in self.cables.items():
+            node, vector = f"{name}.node", f"{name}.vector"
+            found[node] = Variable((node,), cable["node_s"], "m", "undeformed arc-length of the node")
+            found[vector] = Variable((vector,), np.array(cable["vector_names"]), "1", "nodal vector")
+        return found
 
 
 def fake_recording(scene: Scene, status: str = "completed", message: str = "", duration: float = 1.0, times: int = 101):
@@ -29,7 +56,7 @@ def fake_recording(scene: Scene, status: str = "completed", message: str = "", d
     elastic = 20 * depth**2 / 0.03
     dissipated = 0.01 * time
     balance_error = 1e-6 * np.sin(40 * time)
-    return SimpleNamespace(
+    return FakeRecording(
         status=status,
         message=message,
         time=time,

@@ -148,10 +148,12 @@ def _slides(model: Model, at: States, kind: str, asked: Asked) -> Values:
     """Return arc-length and outputs of slides, the norm of the residual, and the moment of those that hold axes."""
     found: Values = {}
     for k, slide in enumerate(model.slides):
+        if not asked(slide.name):
+            continue
         outputs = at.outputs(kind, k)
         found[slide.name] = {"s": at.s[:, k]} | outputs | {"residual": sizes(outputs["residual"])}
     for k, joint in enumerate(model.joints):
-        if joint.slide is not None:
+        if joint.slide in found:
             found[joint.slide]["moment"] = joint_state(joint, at.outputs("joint", k))["moment"]
     return found
 
@@ -159,7 +161,7 @@ def _slides(model: Model, at: States, kind: str, asked: Asked) -> Values:
 def _joints(model: Model, at: States, kind: str, asked: Asked) -> Values:
     """Return the results of the scene's joints, without those that hold the axes of slides."""
     return {joint.name: joint_state(joint, at.outputs(kind, k)) for k, joint in enumerate(model.joints)
-            if joint.slide is None}
+            if joint.slide is None and asked(joint.name)}
 
 
 def _point_forces(model: Model, at: States, kind: str, asked: Asked) -> Values:
@@ -172,6 +174,8 @@ def _contacts(model: Model, at: States, kind: str, asked: Asked) -> Values:
     """Return the outputs of contacts; arc-lengths are NaN without contact."""
     found: Values = {}
     for k, contact in enumerate(model.contacts):
+        if not asked(contact.name):
+            continue
         outputs = at.outputs(kind, k)
         length = outputs["touching"]
         active = length > 0 if contact.cable >= 0 else np.zeros(len(length), dtype=bool)

@@ -42,7 +42,7 @@ def into_plane(scene: S, plane: Plane) -> S:
 
     Raises SceneError for parts that cannot be turned.
     """
-    axes = PlaneAxes(plane, scene.bodies, _size(scene.cables.values()))
+    axes = PlaneAxes(plane, scene.bodies.copy(), _size(scene.cables.values()))
     made = scene.replaced(lambda part: turned(part, axes, scene))
     made.gravity, made.plane_axes, made.drawn = _vector(axes, None, scene.gravity), axes, scene
     return made

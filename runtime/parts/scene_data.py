@@ -242,9 +242,9 @@ class SceneData:
 
     def _names_beside(self, group: str) -> list[dict[str, Part]]:
         """Return the groups that share the space of names of a group."""
+        held: dict[str, Any] = vars(self)
         if group == "events":
-            return [self.events] if self.events else []
-        held = vars(self)
+            return [held[group]] if held[group] else []
         found = [parts for each in _named_groups() if (parts := held[each])]
         if self.ropes:
             found.append({each.given_name or "": each for rope in self.ropes.values() for each in rope.named_within()})

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Mapping
+from threading import RLock
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -47,31 +49,23 @@ ENERGIES = {
 }
 
 
-def labelled(rows: Any) -> tuple[dict[str, Variable], dict[str, Variable]]:
-    """Return the labelled results and coordinates of `recording.Rows`."""
+def labelled(rows: Any) -> dict[str, Variable]:
+    """Return the labelled results of `recording.Rows`."""
     variables = {}
-    coords = {
-        "time": Variable(("time",), rows.time, "s", "time"),
-        "xyz": Variable(("xyz",), np.array(["x", "y", "z"]), "1", "axis"),
-    }
     for name, cable in rows.cables.items():
-        node, vector = f"{name}.node", f"{name}.vector"
-        dims = ("time", node, vector, "xyz")
-        coords[node] = Variable((node,), cable["node_s"], "m", "undeformed arc-length of the node")
-        coords[vector] = Variable((vector,), np.array(cable["vector_names"]), "1", "nodal vector")
+        dims = ("time", f"{name}.node", f"{name}.vector", "xyz")
         variables[f"{name}.nodal_vectors"] = Variable(dims, cable["nodal_vectors"], "m (r), 1 (its gradients)",
                                                       "nodal vectors")
         variables[f"{name}.nodal_velocity"] = Variable(dims, cable["nodal_velocity"], "m/s (r), 1/s (its gradients)",
                                                        "rates of the nodal vectors")
     for name, body in rows.modal.items():
-        mode, node = f"{name}.mode", f"{name}.node"
-        eta, places = body["modal_coordinates"], body["nodes"]
-        coords[mode] = Variable((mode,), np.arange(1, eta.shape[1] + 1), "1", "mode")
-        coords[node] = Variable((node,), np.arange(places.shape[1]), "1", "node")
-        variables[f"{name}.modal_coordinates"] = Variable(("time", mode), eta, "as the modes are", "modal coordinates")
+        mode = f"{name}.mode"
+        variables[f"{name}.modal_coordinates"] = Variable(("time", mode), body["modal_coordinates"], "as the modes are",
+                                                          "modal coordinates")
         variables[f"{name}.modal_velocities"] = Variable(("time", mode), body["modal_velocities"],
                                                          "as the modes are, 1/s", "rates of the modal coordinates")
-        variables[f"{name}.nodes"] = Variable(("time", node, "xyz"), places, "m", "places of the deformed body's nodes")
+        variables[f"{name}.nodes"] = Variable(("time", f"{name}.node", "xyz"), body["nodes"], "m",
+                                              "places of the deformed body's nodes")
     for group, parts in rows.parts.items():
         for name, arrays in parts.items():
             for quantity, values in arrays.items():
@@ -80,4 +74,60 @@ def labelled(rows: Any) -> tuple[dict[str, Variable], dict[str, Variable]]:
                 variables[f"{name}.{quantity}"] = Variable(of_part, values, of.units, of.long_name)
     for name, values in rows.energy.items():
         variables[f"energy.{name}"] = Variable(("time",), values, "J", ENERGIES[name])
-    return variables, coords
+    return variables
+
+
+class ComputedWhenRead(Mapping[str, Variable]):
+    """Results by name, of which those of a part are computed when the first of them is read, and kept."""
+
+    def __init__(self, results: Callable[[str | None], Mapping[str, Variable]]):
+        """results: returns the results of a part, the name of a result up to the last dot, or with None of all."""
+        self._results: Callable[[str | None], Mapping[str, Variable]] | None = results
+        self._found: dict[str, Variable] = {}
+        self._parts: set[str] = set()
+        self._lock = RLock()
+
+    def _of(self, name: str) -> Variable | None:
+        """Return a result, None where there is none of this name."""
+        found, part = self._found.get(name), name.rpartition(".")[0]
+        if found is not None or self._results is None or part in self._parts:
+            return found
+        with self._lock:
+            of_part = {} if self._results is None else self._results(part)
+            for each, variable in of_part.items():
+                self._found.setdefault(each, variable)
+            if any(each.rpartition(".")[0] == part for each in of_part):
+                self._parts.add(part)
+                return self._found.get(name)
+        return self._all().get(name)
+
+    def _all(self) -> dict[str, Variable]:
+        """Return all results; those that were read before stay the same arrays."""
+        with self._lock:
+            if self._results is not None:
+                self._found = {name: self._found.get(name, each) for name, each in self._results(None).items()}
+                self._results = None
+        return self._found
+
+    def __getitem__(self, name: str) -> Variable:
+        """Return a result."""
+        found = self._of(name)
+        if found is None:
+            raise KeyError(name)
+        return found
+
+    def __contains__(self, name: object) -> bool:
+        """Return whether there is such a result."""
+        return isinstance(name, str) and self._of(name) is not None
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the names of all results."""
+        return iter(self._all())
+
+    def __len__(self) -> int:
+        """Return the number of results."""
+        return len(self._all())
+
+    def __reduce__(self) -> tuple[type[dict[str, Variable]], tuple[dict[str, Variable]]]:
+        """Return all results as a dict, for copies and other processes."""
+        return dict, (dict(self._all()),)

@@ -18,7 +18,7 @@ from ..parts.settings import RunSettings
 from ..solve.motion.run import FAILED_STATUSES, Simulation
 from ..solve.notes.coincident_points import CoincidentPoints
 from ..solve.notes.diagnosis import RESULTS_KEPT, rope_left, stopped
-from .quantities import ENERGIES
+from .quantities import ENERGIES, Variable, labelled
 
 
 @dataclass
@@ -29,30 +29,55 @@ class Rows:
     modal bodies.
     """
 
-    time: np.ndarray
-    cables: dict[str, dict[str, Any]]
+    cables: dict[str, dict[str, np.ndarray]]
     modal: dict[str, dict[str, np.ndarray]]
     parts: dict[str, dict[str, dict[str, np.ndarray]]]
     energy: dict[str, np.ndarray]
 
 
 @dataclass
-class Recording(Rows):
-    """The rows of a run that are still in memory, its status and report."""
+class Recording:
+    """The rows of a run that are still in memory, as the engine has them, its status and report.
 
+    scene: in the axes of the model; coords: of the results.
+    """
+
+    model: Model
+    scene: SceneData
+    rows: dict[str, np.ndarray]
+    coords: dict[str, Variable]
     status: str
     message: str
     report: dict[str, Any]
 
+    def variables(self, alone: str | None = None) -> dict[str, Variable]:
+        """Return the labelled results by name; alone: only those of this part, or of "energy"."""
+        return labelled(named(self.model, self.scene, self.rows, alone))
 
-def named(model: Model, scene: SceneData, engine: Engine) -> Rows:
-    """Return the engine's rows by name."""
-    rows = engine.rows()
-    found = part_states(model, scene, States.of_rows(rows))
-    cables = {cable.name: found.cables[cable.name] | {"node_s": cable.mesh.node_s, "vector_names": cable.vectors}
-              for cable in model.cables}
-    energy = {name: rows[name] for name in ENERGIES}
-    return Rows(rows["time"], cables, found.modal, found.parts, energy)
+
+def named(model: Model, scene: SceneData, rows: dict[str, np.ndarray], alone: str | None = None) -> Rows:
+    """Return the engine's rows by name; alone: only those of this part, or of "energy"."""
+    found = part_states(model, scene, States.of_rows(rows), alone)
+    energy = {name: rows[name] for name in ENERGIES} if alone in (None, "energy") else {}
+    return Rows(found.cables, found.modal, found.parts, energy)
+
+
+def coordinates(model: Model, time: np.ndarray) -> dict[str, Variable]:
+    """Return the labelled coordinates of the results of a model; time: of the rows, in s."""
+    coords = {
+        "time": Variable(("time",), time, "s", "time"),
+        "xyz": Variable(("xyz",), np.array(["x", "y", "z"]), "1", "axis"),
+    }
+    for cable in model.cables:
+        node, vector = f"{cable.name}.node", f"{cable.name}.vector"
+        coords[node] = Variable((node,), cable.mesh.node_s, "m", "undeformed arc-length of the node")
+        coords[vector] = Variable((vector,), np.array(cable.vectors), "1", "nodal vector")
+    for body in model.bodies:
+        if body.shape is not None:
+            mode, node = f"{body.name}.mode", f"{body.name}.node"
+            coords[mode] = Variable((mode,), np.arange(1, body.modes + 1), "1", "mode")
+            coords[node] = Variable((node,), np.arange(len(body.shape.fields.nodes)), "1", "node")
+    return coords
 
 
 def recorded(simulation: Simulation, scene: SceneData, settings: RunSettings) -> Recording:
@@ -60,7 +85,8 @@ def recorded(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
     begin = time.perf_counter()
     model, engine, status = simulation.model, simulation.engine, simulation.status
     statistics = engine.statistics
-    costs, rows = _costs(model, engine), named(model, scene, engine)
+    costs, rows = _costs(model, engine), engine.rows()
+    coords = coordinates(model, rows["time"])
     results = time.perf_counter() - begin
     seconds = {"set_up": simulation.set_up_s, "start": simulation.start_s, "results": simulation.notes_s + results,
                "total": simulation.total_s + results}
@@ -83,7 +109,7 @@ def recorded(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
         "modes": {body.name: body.modes_in_words for body in scene.bodies.values() if isinstance(body, ModalBody)},
     }
     return Recording(
-        **vars(rows),
+        model, scene, rows, coords,
         status="no_convergence" if status in FAILED_STATUSES else status,
         message=_message(simulation, scene, settings),
         report=report,

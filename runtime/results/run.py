@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
@@ -24,7 +25,7 @@ from ..parts.scene_data import OfDrawing, SceneData
 from ..parts.scene_text import dumps
 from ..parts.settings import RunSettings
 from ..parts.slide import Slide
-from .quantities import ENERGIES, EnergyBalance, Variable, labelled
+from .quantities import ENERGIES, ComputedWhenRead, EnergyBalance, Variable
 from .viewable import Viewable
 
 if TYPE_CHECKING:
@@ -42,6 +43,8 @@ TIME_TOLERANCE = 1e-9
 BESIDE_THE_MIDDLE = ("returned beside the middle of the groove", "moved along the groove")
 """Events after which a rope without mass lies beside the middle of a groove (engine/events/taut_rope.c)."""
 WRITE_BLOCK_BYTES = 1 << 22
+NODAL_VECTORS, POSITION = ".nodal_vectors", ".position"
+"""Ends of the names of a cable's nodal vectors, and of their positions."""
 MAX_COSTS = 6
 """Slides and joints that a summary names with their times."""
 COUNTS = {"steps": "taken", "rejected_steps": "rejected", "newton_iterations": "Newton iterations",
@@ -107,7 +110,9 @@ class Run(Viewable, NamedArrays):
     def from_recording(cls, recording: Recording, scene: SceneData, settings: RunSettings,
                        read_scene: ReadScene) -> Run:
         """Return the run of a recording; read_scene: makes the scene from its text."""
-        variables, coords = labelled(recording)
+        kept = scene.copied()
+        if recording.scene is scene:  # to which parts may be added before its results are read
+            recording = replace(recording, scene=kept)
         report = {
             **recording.report,
             "status": recording.status,
@@ -117,7 +122,8 @@ class Run(Viewable, NamedArrays):
                          *recording.report.get("messages", [])],
             "settings": settings.field_values(),
         }
-        return cls(variables, coords, report, SceneText(scene.copied(), read_scene, scene.libraries))
+        return cls(ComputedWhenRead(recording.variables), recording.coords, report,
+                   SceneText(kept, read_scene, scene.libraries))
 
     @property
     def time(self) -> np.ndarray:
@@ -177,7 +183,7 @@ class Run(Viewable, NamedArrays):
 
     def __contains__(self, name: object) -> bool:
         """Return whether there is a result of this name."""
-        return name in self.variables or name in self._positions or name == "time"
+        return name == "time" or (isinstance(name, str) and (self._nodal(name) or name) in self.variables)
 
     def _ipython_key_completions_(self) -> list[str]:
         """Return the completions after ``run["``."""
@@ -187,18 +193,22 @@ class Run(Viewable, NamedArrays):
         """Return the array of a name, time first; ``variables[name]`` has its unit and dimensions."""
         if name == "time":
             return self.time
-        if name in self._positions:
-            return self.variables[self._positions[name]].values[:, :, 0]
+        if (nodal := self._nodal(name)) is not None:
+            return self.variables[nodal].values[:, :, 0]
         if name not in self.variables:
             known = [*self.variables, *self._positions]
             raise UnknownResultError(f'the run has no result "{name}"; {near(name, known)}')
         return self.variables[name].values
 
-    @cached_property
-    def _positions(self) -> dict[str, str]:
-        """Return the names of the positions of nodes, (time, node, 3) in m, with those of their nodal vectors."""
-        suffix = ".nodal_vectors"
-        return {name.removesuffix(suffix) + ".position": name for name in self.variables if name.endswith(suffix)}
+    def _nodal(self, name: str) -> str | None:
+        """Return the name of the nodal vectors of which a result is the positions, None of other results."""
+        nodal = name.removesuffix(POSITION) + NODAL_VECTORS
+        return nodal if name.endswith(POSITION) and nodal in self.variables else None
+
+    @property
+    def _positions(self) -> list[str]:
+        """Return the names of the positions of nodes, (time, node, 3) in m, which are parts of their nodal vectors."""
+        return [name.removesuffix(NODAL_VECTORS) + POSITION for name in self.variables if name.endswith(NODAL_VECTORS)]
 
     def at(self, time: float) -> InitialState:
         """Return the state at an output time (s), for ``scene.run(initial=...)`` of this scene or a similar one.

@@ -29,7 +29,7 @@ from .locks import claimed_for, is_at, locked
 from .netcdf import File
 from .opening import opened
 from .quantities import Variable, labelled
-from .recording import Recording, Rows, named
+from .recording import Recording, coordinates, named
 from .resume_facts import facts_of, start_of
 from .run import ReadScene, Run
 
@@ -177,7 +177,8 @@ class Stream:
 
     def _take(self) -> None:
         """Write the rows of the engine, which may then overwrite them."""
-        self._add(named(self._model, self._scene, self._engine))
+        rows = self._engine.rows()
+        self._add(labelled(named(self._model, self._scene, rows)), coordinates(self._model, rows["time"]))
         self._row_notes.see(self._engine)
         self._engine.take_rows()
         self._added = time.monotonic()
@@ -190,9 +191,9 @@ class Stream:
         last = Run.from_recording(recording, self._scene, self._settings, self._read_scene)
         if self._resumed:
             last.report["resumed_at_s"] = self._resumed
-        if self._opened is None and not len(recording.time):
+        if self._opened is None and not len(recording.rows["time"]):
             return last
-        self._add(recording)
+        self._add(recording.variables(), recording.coords)
         if not self._has_name:
             self._rename()
         self._report(last.report, self._file.rows)
@@ -234,9 +235,7 @@ class Stream:
         self._opened = create_file(self._part, coords, variables, dumps(self._scene), file_text(report, rows),
                                    REPORT_SPARE, descriptor)
 
-    def _add(self, rows: Rows) -> None:
-        variables, coords = labelled(rows)
-
+    def _add(self, variables: Mapping[str, Variable], coords: Mapping[str, Variable]) -> None:
         def add() -> None:
             if self._opened is None:
                 self._open_part(coords, variables, self._unfinished())

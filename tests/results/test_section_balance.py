@@ -180,9 +180,9 @@ def engine_rows(monkeypatch):
     """Return the recorded rows of the engine with the results of the run."""
     kept, named = {}, recording.named
 
-    def spy(model, scene, engine):
-        kept.update(engine.rows())
-        return named(model, scene, engine)
+    def spy(model, scene, rows, alone=None):
+        kept.update(rows)
+        return named(model, scene, rows, alone)
 
     monkeypatch.setattr(recording, "named", spy)
     return kept
