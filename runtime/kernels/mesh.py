@@ -49,6 +49,11 @@ class Mesh:
         return float(self.lengths[0]) if self.is_even else self.total / self.n_elements
 
     @property
+    def all_lengths(self) -> np.ndarray:
+        """Return (elements,): the length of each element, in m."""
+        return self.lengths.repeat(self.n_elements) if self.is_even else self.lengths
+
+    @property
     def node_s(self) -> np.ndarray:
         """Return (nodes,): arc-lengths of the nodes, in m."""
         return self.lengths[0] * np.arange(self.n_elements + 1) if self.given is None else self.given

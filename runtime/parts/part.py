@@ -68,17 +68,18 @@ class _TranslatingType(ModelMetaclass):
             example = ", ".join(f"{name}=..." for name in list(inspect.signature(cls).parameters)[:max(2, len(given))])
             raise SceneError(cls.__name__, f"takes its values by name, got {len(given)} without one",
                              f"write {cls.__name__}({example})")
-        place = cls.title(data)  # type: ignore[attr-defined]
-        found = [SceneError(place, *_unknown(name, known), entry=name) for name in data if name not in known]
+        complaints: list[ErrorDetails] = []
         try:
             made = super().__call__(**{name: value for name, value in data.items() if name in known})
+            if data.keys() <= known.keys():
+                return made
         except ValidationError as error:
-            found += [_of_complaint(place, each) for each in error.errors(include_url=False)
-                      if each["type"] != "default_factory_not_called"]
-        if found:
-            found[0].errors = tuple(found)
-            raise found[0] from None
-        return made
+            complaints = error.errors(include_url=False)
+        place = cls.title(data)  # type: ignore[attr-defined]
+        found = [*(SceneError(place, *_unknown(name, known), entry=name) for name in data if name not in known),
+                 *(_of_complaint(place, each) for each in complaints if each["type"] != "default_factory_not_called")]
+        found[0].errors = tuple(found)
+        raise found[0]
 
 
 class Part(BaseModel, metaclass=_TranslatingType):

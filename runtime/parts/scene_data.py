@@ -166,8 +166,8 @@ class SceneData:
     @property
     def dim(self) -> int:
         """Return 2 if its cables or its ropes are planar, else 3."""
-        return min([*(cable.dim for cable in self.cables.values()), *(rope.dim for rope in self.ropes.values())],
-                   default=3)
+        planar = [cable for cable in self.cables.values() if cable.dim == 2]
+        return 2 if planar or (self.ropes and any(rope.dim == 2 for rope in self.ropes.values())) else 3
 
     @property
     def plane(self) -> Plane | None:

@@ -67,7 +67,7 @@ def items(value: Any, least: int, most: float = math.inf) -> list[Any] | None:
 def _real(value: Any) -> float:
     if type(value) is float:  # a tenth of the time of the check below
         return value
-    if isinstance(value, bool) or not isinstance(value, Real):
+    if type(value) is not int and (isinstance(value, bool) or not isinstance(value, Real)):
         raise ValueError(f"must be a number, got {shown(value)}")
     try:
         return float(value)
@@ -86,8 +86,9 @@ def _in_range(value: float | tuple[float, ...], numbers: tuple[float, ...], unit
 
 def number(value: Any, unit: str = "") -> float:
     """Return ``value`` as a finite float within `LIMITS`. Raises ValueError, also for text and booleans."""
-    result = _real(value)
-    _in_range(result, (result,), unit)
+    result, largest = _real(value), LIMITS.get(unit, OTHER_LIMITS)[1]
+    if not -largest <= result <= largest:
+        _in_range(result, (result,), unit)
     return result
 
 
@@ -96,11 +97,13 @@ def vector(value: Any, unit: str = "", size: int = 3) -> tuple[float, ...]:
     if (given := items(value, size, size)) is None:
         raise ValueError(f"must be {size} numbers, got {shown(value)}")
     numbers = tuple(map(_real, given))
-    largest = LIMITS["m"][1]
-    if unit == "m" and largest < max(map(abs, numbers), default=0.0) < math.inf:
-        raise ValueError(f"must lie within {largest:g} m of the origin, beyond which positions are rounded to more "
-                         f"than 1e-7 m, got {show(numbers, unit)}", "draw the scene nearer to the origin")
-    _in_range(numbers, numbers, unit)
+    largest = LIMITS.get(unit, OTHER_LIMITS)[1]
+    for each in numbers:
+        if not -largest <= each <= largest:
+            if unit == "m" and largest < max(map(abs, numbers)) < math.inf:
+                raise ValueError(f"must lie within {largest:g} m of the origin, beyond which positions are rounded to "
+                                 f"more than 1e-7 m, got {show(numbers, unit)}", "draw the scene nearer to the origin")
+            _in_range(numbers, numbers, unit)
     return numbers
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from functools import cache
 from typing import TYPE_CHECKING, Any, Self, TypeVar, cast
 
 from ..errors import SceneError, near
@@ -33,10 +34,7 @@ class DescribedScene(SceneMethods):
 
         Returns the part as in the scene. Raises SceneError.
         """
-        from ..checks.adding import check_of  # not needed to read saved runs
-        from ..checks.rope_placement import check_apart_from_ropes  # likewise
-        from ..checks.whole_scene import check_plane  # likewise
-
+        check_of, _, check_apart_from_ropes, check_plane = _checks()
         if part.is_named():
             if part.given_name is None:
                 part = part.model_copy(update={"name": self.free_name(type(part))})
@@ -55,10 +53,7 @@ class DescribedScene(SceneMethods):
         Returns the parts as in the scene, pairs of the first entry of the list first. Raises SceneError; then none of
         them is added.
         """
-        from ..checks.adding import check_all_of  # likewise
-        from ..checks.rope_placement import check_apart_from_ropes  # likewise
-        from ..checks.whole_scene import check_plane  # likewise
-
+        _, check_all_of, check_apart_from_ropes, check_plane = _checks()
         pairs = pairs_of(self, kind, entries)
         ends, given = kind.positional, entries.get("name")
         one = kind(**{**entries, **dict(zip(ends, pairs[0], strict=True))})
@@ -153,6 +148,16 @@ class DescribedScene(SceneMethods):
             name = part.given_name or getattr(part, "label", part.kind)
             found.setdefault(part.kind, []).append(str(name))
         return found
+
+
+@cache
+def _checks() -> tuple[Callable[..., Any], ...]:
+    """Return `check_of`, `check_all_of`, `check_apart_from_ropes` and `check_plane`, imported once."""
+    from ..checks.adding import check_all_of, check_of  # not needed to read saved runs
+    from ..checks.rope_placement import check_apart_from_ropes  # likewise
+    from ..checks.whole_scene import check_plane  # likewise
+
+    return check_of, check_all_of, check_apart_from_ropes, check_plane
 
 
 def _names_of(parts: list[Part]) -> set[str]:

@@ -225,9 +225,11 @@ class Scene(Viewable, DescribedScene):
 
     def _saving(self, settings: RunSettings, resume: bool) -> AbstractContextManager[Stream | None]:
         """Return the writer of the file of a run, if it has one."""
-        from ..results.streaming import Stream  # as above
+        if settings.save is None:
+            return nullcontext()
+        from ..results.streaming import Stream  # brings the file format, which takes 20 ms
 
-        return nullcontext() if settings.save is None else Stream(settings.save, self, settings, resume, self.from_toml)
+        return Stream(settings.save, self, settings, resume, self.from_toml)
 
     def _estimate(self, run: Run, settings: RunSettings, state: Start | None) -> None:
         """Add the errors of steps and mesh to the report of a run, unless interrupted; state: the given start."""

@@ -55,7 +55,7 @@ class _Strains:
     def __init__(self, scene: SceneData, model: Model, cable: CableModel):
         self.cable, self.part = cable, scene.cables[cable.name]
         self.EA, self.EI, *_ = LineStiffness.of(self.part, model.dim)
-        self.h = np.full(cable.n_elements, cable.mesh.mean) if cable.mesh.is_even else cable.mesh.lengths
+        self.h = cable.mesh.all_lengths
         self.supported = sorted(self.part.node(each.s) for each in scene.supports if each.cable == cable.name)
         self.drawn = self._strain(self.part.rest_nodal_vectors[None]) if self.part.is_curved else 0.0
         self.scene = scene

@@ -48,7 +48,7 @@ class Folds(Note):
         for cable in self.model.cables:
             part = self.scene.cables[cable.name]
             if part.traits.membrane != "tension_only":
-                self._cables.append((cable, np.broadcast_to(cable.mesh.lengths, cable.n_elements) if not part.is_curved
+                self._cables.append((cable, cable.mesh.all_lengths if not part.is_curved
                                      else _chords(part.rest_nodal_vectors[:, cable.vectors.index("r")])))
 
     def see(self, rows: Rows) -> None:
