@@ -34,7 +34,7 @@ SECTIONS = {2: np.array([[0.0, 1.0], [-1.0, 0.0]]), 3: np.eye(3)[:, [2, 0, 1]]}
 """Axes of `frames.section_frame` in the frame of r_y and r_z."""
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class AttachmentModel:
     """fu_attachment of the engine; cable, body, slide: -1 where it is on none; mass and length: its scales, kg and m.
 

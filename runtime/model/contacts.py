@@ -33,7 +33,7 @@ STATIC_COMPLIANCE = 1e-10
 """Penetration, in m, of a hard contact in statics under the weight of its body."""
 
 
-@dataclass(kw_only=True)
+@dataclass(eq=False, repr=False, kw_only=True)
 class ContactModel(CouplingModel):
     """Contact with a surface by penalty: fu_contact of engine/couplings/contact/contact.h.
 
@@ -74,7 +74,7 @@ class ContactModel(CouplingModel):
         return (self.cable,) if self.cable >= 0 else ()
 
 
-@dataclass(kw_only=True)
+@dataclass(eq=False, repr=False, kw_only=True)
 class HardContactModel(ContactModel):
     """Hard contact of one point of a body with a surface: fu_hard_contact of hard_contact.h."""
 
@@ -84,7 +84,7 @@ class HardContactModel(ContactModel):
         return [*self.attachments, *self.on]
 
 
-@dataclass(kw_only=True)
+@dataclass(eq=False, repr=False, kw_only=True)
 class RopeContactModel(AlongSpan, CouplingModel):
     """Contact of a span of a rope with a surface: fu_rope_contact of engine/couplings/contact/contact.h.
 

@@ -16,7 +16,7 @@ def no_numbers() -> np.ndarray:
     return np.zeros(0)
 
 
-@dataclass(kw_only=True)
+@dataclass(eq=False, repr=False, kw_only=True)
 class CouplingModel:
     """Base of the models of couplings. The engine reads fields of its type from attributes and entries of these names.
 

@@ -21,7 +21,7 @@ MIN_PENETRATION = 1e-30
 KERNELS = {2: "planar_crossing", 3: "crossing"}
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class CrossingModel(CouplingModel):
     """Contact of a cable with another one, or with a bar at the one attachment.
 

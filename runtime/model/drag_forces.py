@@ -14,7 +14,7 @@ from .model import CableModel, Model
 from .states import attachment_points, element_coordinates, positions, spatial
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class Turning:
     """Moments of a fluid on the sections of a beam, at T instants and points of quadrature (T, elements, points, 3).
 

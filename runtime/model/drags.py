@@ -30,7 +30,7 @@ NONE = np.zeros(0)
 KERNELS = {2: "planar_drag", 3: "drag"}
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class DragModel(AlongSpan, CouplingModel):
     """The force of a fluid on a cable, on a span of a rope, or on a point of a body; cable -1: along the span of the
     coordinates, or on a body, at the one attachment.

@@ -25,7 +25,7 @@ SOLVES_PER_FACTORISATION = 5
 """Approximate number of solves per factorisation."""
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class Elimination:
     """Fronts as in engine/linear/fronts.h; strips (n, 2): an unknown and a chain coupled to it, increasing.
 

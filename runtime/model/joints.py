@@ -18,7 +18,7 @@ from .attachments import AttachmentModel, ModelBuilder
 from .coupling import CouplingKind, CouplingModel
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class JointModel(CouplingModel):
     """A joint between two ends; base: its distance or angle without the signal that drives it, m or rad.
 

@@ -20,7 +20,7 @@ GAUSS = np.polynomial.legendre.leggauss(4)
 """Points along an element of a distributed force: exact to degree 7."""
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class DeadLoadModel(CouplingModel):
     """A force of constant direction in the dofs, times a signal (number, -1: one)."""
 
@@ -34,7 +34,7 @@ class DeadLoadModel(CouplingModel):
         return len(self.dofs)
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class LoadModel(CouplingModel):
     """A load that depends on rotations of its cable or body, or a force on a point of a rope.
 
@@ -54,7 +54,7 @@ class LoadModel(CouplingModel):
         return [self.on.rope_point] if self.on.rope_point else []
 
 
-@dataclass(kw_only=True)
+@dataclass(eq=False, repr=False, kw_only=True)
 class LineLoadModel(AlongSpan, CouplingModel):
     """A force of a stress-free length on the material of a rope in a span, times a signal (number, -1: one).
 

@@ -50,7 +50,7 @@ class Kernel(Protocol):
         """Return the outputs for n sets of arguments: of each, n along the first axis, or one for all."""
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class CableModel:
     """One cable: constants of its elements and the position of its coordinates.
 
@@ -100,7 +100,7 @@ class CableModel:
         return cast(Kernel, getattr(kernels_of(self.library), kind.law_kernel(self.element, self.law, name)))
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class ShapeModel:
     """Modes of a body: S (n + 1, dim), X (n + 1, n + 1, dim, dim), gravity (dim,)."""
 
@@ -112,7 +112,7 @@ class ShapeModel:
     fields: Shape
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class BodyModel:
     """One body: kernels of its frame, inertia, position of its coordinates; `shape`: of a modal one.
 
@@ -141,7 +141,7 @@ class BodyModel:
         return self.kernel.replace("rigid", "modal")
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class SlideModel(AlongSpan, CouplingModel):
     """One slide on a cable, or on a span of a rope; its first unknown is s.
 
@@ -222,7 +222,7 @@ def _couplings_of(kind: type[K]) -> cached_property[list[K]]:
     return cached_property(lambda model: cast(Model, model).of(kind))
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class Model:
     """Arrays that the engine reads, explained in engine/bodies/model.h.
 

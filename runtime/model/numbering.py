@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class Numbering:
     """number[unknown]: first the band, in which unknowns of one element are at most `width` apart, then the border.
 
@@ -21,7 +21,7 @@ class Numbering:
     chains: np.ndarray
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class Incidence:
     """Incidence of elements and unknowns: an element and an unknown per entry."""
 

@@ -77,7 +77,7 @@ Asked = Callable[[str], bool]
 """Whether results of a label are requested."""
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class PartStates:
     """Results of parts: nodal vectors of cables, coordinates of modal bodies, and by group the results of classes."""
 

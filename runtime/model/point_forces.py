@@ -66,7 +66,7 @@ class ForceLaw:
         return np.array(self.parameters[segment * self.n_parameters :][: self.n_parameters])
 
 
-@dataclass(kw_only=True)
+@dataclass(eq=False, repr=False, kw_only=True)
 class PointForceModel(CouplingModel, ForceLaw):
     """A force between two points, whose unknowns are its components."""
 

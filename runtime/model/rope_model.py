@@ -29,7 +29,7 @@ class Turning:
         return [] if self.turn < 0 else [self.turn]
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class SheaveCoordinates(Turning):
     """The dofs of a sheave: material coordinates of the ends of its zones; its rotation, -1 for none."""
 
@@ -37,7 +37,7 @@ class SheaveCoordinates(Turning):
     turn: int
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class DrumCoordinates(Turning):
     """The dofs of a drum: the end of the rope there, 0 or -1, its span, and the rotation, -1 for none."""
 
@@ -56,7 +56,7 @@ class DrumCoordinates(Turning):
         return self.span.s[self.end]
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class RopeModel:
     """The coordinates of a rope, with their values as drawn.
 

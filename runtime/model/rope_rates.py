@@ -182,7 +182,7 @@ def _set_turns(model: Model, rope: RopeModel) -> None:
                 model.signals[motion.signal].value(np.zeros(()), 1))
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class _Holder:
     """What holds an item of a route: velocity (dim,) in m/s, angular velocity of the item in rad/s, and radii in m to
     the axis of the rope and to its tangent points where it runs on and off, with the sense of travel as sign; 0 at an
@@ -289,7 +289,7 @@ def _motion_on_cable(model: Model, attachment: AttachmentModel) -> tuple[np.ndar
     return velocity, float(_left(along) @ swing) / float(along @ along)
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class _SpanRates:
     """A span: what holds its ends, length and stress-free length in m, and the rates of its length and direction."""
 

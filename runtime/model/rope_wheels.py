@@ -29,7 +29,7 @@ NO_TENSION = 1e-12
 """Strain below which a tension is none; over 1 m."""
 
 
-@dataclass(kw_only=True)
+@dataclass(eq=False, repr=False, kw_only=True)
 class WheelModel(CouplingModel):
     """What sheaves and drums share: fu_wheel of the engine.
 
@@ -75,7 +75,7 @@ class WheelModel(CouplingModel):
         return np.cross(*self.plane.T).tolist() if self.foot else []
 
 
-@dataclass(kw_only=True)
+@dataclass(eq=False, repr=False, kw_only=True)
 class SheaveModel(WheelModel):
     """A sheave between two spans: fu_sheave of the engine.
 
@@ -178,7 +178,7 @@ class SheaveModel(WheelModel):
         return self.after.share
 
 
-@dataclass(kw_only=True)
+@dataclass(eq=False, repr=False, kw_only=True)
 class WrapPointModel(CouplingModel):
     """An end of a zone of a sheave where friction sticks: fu_wrap_point of the engine; place: in the wrap."""
 
@@ -276,7 +276,7 @@ CELLS = 256
 """Parts of a rope over each of which what is wound on a drum has one stretch."""
 
 
-@dataclass(kw_only=True)
+@dataclass(eq=False, repr=False, kw_only=True)
 class DrumModel(WheelModel):
     """A drum at an end of a rope: fu_drum of the engine.
 

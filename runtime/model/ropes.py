@@ -24,7 +24,7 @@ JOINTS = {2: "joint_planar_spherical", 3: "joint_spherical"}
 """The kernel of an end on a body."""
 
 
-@dataclass(kw_only=True)
+@dataclass(eq=False, repr=False, kw_only=True)
 class SpanModel(AlongSpan, CouplingModel):
     """A span between two tangent points or ends: fu_span_coupling of the engine.
 
@@ -99,7 +99,7 @@ def _called(item: RouteItem) -> str:
     return "an anchor" if isinstance(item, Anchor) else item.where
 
 
-@dataclass(kw_only=True)
+@dataclass(eq=False, repr=False, kw_only=True)
 class AnchorModel(CouplingModel):
     """An end of a rope on a body: a spherical joint, fu_joint of the engine."""
 

@@ -27,7 +27,7 @@ RIDERS = {2: "planar_point", 3: "point"}
 """Kernels of a slide whose rider is no point of a rigid body."""
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class _Line:
     """Where a slide starts: prefix of its kernels, the fields of `SlideModel` about its cable or rope, and the element
     with its neighbour, if s is at a node between both.

@@ -12,7 +12,7 @@ PER_NODE = 2
 """Vectors of a node: its place, and its slope by the stress-free arc-length."""
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class SpanCoordinates:
     """The dofs of a span: first of its nodes, shares of these in its length, and the two material coordinates."""
 

@@ -19,7 +19,7 @@ class Fronts(Protocol):
     strips: np.ndarray
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class SystemLayout:
     """numbers: all arrays, one behind the other; first: the place of each by its name in engine/linear.
 

@@ -17,7 +17,7 @@ Outputs = Callable[[str, int], dict[str, np.ndarray]]
 """Returns the outputs of a coupling by its kind and its number among those of the kind."""
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class _Point:
     """A point of a rope in T states: centre of the rope's circle (T, dim) in m; the plane of its groove (T, dim, 2);
     the rope's angle before and after it, rad, (T,); radius with the sense as sign, m; whether the rope touches it (T,);

@@ -37,7 +37,7 @@ class TurningRope(Protocol):
         ...
 
 
-@dataclass(kw_only=True)
+@dataclass(eq=False, repr=False, kw_only=True)
 class TautPointModel(CouplingModel):
     """A point of a rope without mass, an item of its route: fu_taut_point of the engine.
 
@@ -94,7 +94,7 @@ class TautPointModel(CouplingModel):
         return [] if self.turn < 0 else [np.array([self.turn])]
 
 
-@dataclass(kw_only=True)
+@dataclass(eq=False, repr=False, kw_only=True)
 class TautRopeModel(CouplingModel):
     """A rope of one tension between points that hold it: fu_taut_rope of the engine.
 

@@ -52,7 +52,7 @@ class Row:
     prescribed: list[Prescribed] = field(default_factory=list)
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class Reduction:
     """Dofs as functions of the unknowns.
 
@@ -98,7 +98,7 @@ def by_unknowns(unknown_of_dof: np.ndarray, combinations: Combinations, n: int) 
     return csr_array((values, (rows, columns)), shape=(len(unknown_of_dof), n))
 
 
-@dataclass
+@dataclass(eq=False, repr=False)
 class Node:
     """A node of a cable: its dofs by nodal vector and the vectors as drawn, in the dimension of the element."""
 
