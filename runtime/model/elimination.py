@@ -21,6 +21,8 @@ MAX_DENSE_BORDER = 60
 """Unknowns of a border up to which one front is as fast as several."""
 FRONT_OVERHEAD = 500.0
 """Work of a front beside its arithmetic, in operations."""
+MAX_DELAYED = 100
+"""Pivots that a front of more unknowns may take from earlier ones, in the mean of all fronts; others may double."""
 SOLVES_PER_FACTORISATION = 5
 """Approximate number of solves per factorisation."""
 
@@ -65,6 +67,23 @@ class Elimination:
     def sizes(self) -> np.ndarray:
         """Return (fronts,): the number of unknowns of each, neighbours included."""
         return np.asarray(self.pivots + self.neighbours)
+
+    @property
+    def most_sizes(self) -> np.ndarray:
+        """Return (fronts,): unknowns for which each front has memory, delayed pivots included."""
+        return np.asarray(self.sizes + np.minimum(self.sizes, MAX_DELAYED))
+
+    def most_numbers(self, unpacked: int) -> float:
+        """Return the memory of factors and Schur complements during a factorisation, in numbers.
+
+        unpacked: unknowns of a front up to which its Schur complement stays beside its factors.
+        """
+        sizes = self.most_sizes.astype(float)
+        moved = np.where(self.sizes > unpacked, (self.neighbours + sizes - self.sizes) ** 2, 0.0)
+        has_parent = self.parent >= 0
+        freed = np.bincount(self.parent[has_parent], moved[has_parent], self.n)
+        before = np.cumsum(sizes**2 - freed) - (sizes**2 - freed)
+        return float((before + sizes**2 + moved).max())
 
     @property
     def size(self) -> int:

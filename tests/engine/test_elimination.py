@@ -162,6 +162,19 @@ def test_operations_and_memory_are_linear_in_the_bodies(made):
     assert max(models[-1].newton.sizes) < 40
 
 
+@pytest.mark.parametrize("integrator", ["genalpha", "radau"])
+def test_least_memory_changes_no_bit(integrator, monkeypatch):
+    """Without memory for delayed pivots, Schur complements are moved together where they leave gaps."""
+    def positions() -> bytes:
+        return net(100).run(0.01, output_step=0.01, step=1e-3 if integrator == "genalpha" else None,
+                            integrator=integrator)["breakpoint9_9.position"].tobytes()
+
+    found, memory = positions(), Engine(build(net(100))).memory
+    monkeypatch.setattr(elimination, "MAX_DELAYED", 0)
+    assert positions() == found
+    assert Engine(build(net(100))).memory < memory
+
+
 def test_few_bodies_stay_dense():
     assert build(chain(6)).newton.n == 1
     assert build(chain(20)).newton.n > 10

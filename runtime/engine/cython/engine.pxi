@@ -51,7 +51,7 @@ cdef extern from * nogil:
     int FU_EVENT_OF_Q, FU_EVENT_OF_V, FU_EVENT_OF_S, FU_EVENT_OF_RATE, FU_EVENT_OF_OUTPUT, FU_EVENT_OF_CALL
     int FU_ACTED, FU_DEFERRED, FU_WENT_SLACK
     int FU_INTEGER, FU_REAL, FU_LENGTH, FU_WORD, FU_KERNELS, FU_ATTACHMENT, FU_INTEGERS, FU_REALS
-    int FU_SIGNAL_TERMS, FU_BAND_GROUP
+    int FU_SIGNAL_TERMS, FU_BAND_GROUP, FU_UNPACKED_FRONT
     int FU_BAND_MORE(int width)
     long FU_BAND_BEYOND(int width)
     ctypedef struct fu_cable:
@@ -185,7 +185,7 @@ cdef extern from * nogil:
         double *band
     ctypedef struct fu_factors:
         double *numbers, *x
-        int *unknowns, *map, *start, *first, *size, *pivots, *done
+        int *unknowns, *map, *start, *first, *size, *pivots, *done, *complement
         int most_numbers, most_unknowns
         fu_banded_front banded
     ctypedef struct fu_system:

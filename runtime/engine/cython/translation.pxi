@@ -1,6 +1,5 @@
 # From a model to the C structures of the engine.
 
-FRONT_MEMORY_FACTOR = 4  # memory of fronts over its estimate, for pivots delayed to later fronts
 cdef int INVERSE_SIZE_FACTOR = 4  # unknowns over width of a band: longer bands are solved faster than multiplied by an inverse
 
 cdef const fu_coupling_type *_type_of(coupling) except NULL:
@@ -283,13 +282,13 @@ cdef class Translation(Arrays):
         self._banded_front(&factors.banded, elimination)
         if n == 1:
             return
-        sizes = elimination.sizes.astype(float)
-        factors.most_numbers = min(FRONT_MEMORY_FACTOR * (sizes ** 2).sum(), MAX_INT)
-        factors.most_unknowns = min(2 * FRONT_MEMORY_FACTOR * sizes.sum(), MAX_INT)
+        factors.most_numbers = min(elimination.most_numbers(FU_UNPACKED_FRONT), MAX_INT)
+        factors.most_unknowns = min(2 * elimination.most_sizes.sum(), MAX_INT)
         factors.numbers, factors.x = self._zeros(factors.most_numbers), self._zeros(2.0 * m)
         factors.unknowns, factors.map = self._int_zeros(factors.most_unknowns), self._int_zeros(m)
         factors.start, factors.first = self._int_zeros(n), self._int_zeros(n)
         factors.size, factors.pivots, factors.done = self._int_zeros(n), self._int_zeros(n), self._int_zeros(n)
+        factors.complement = self._int_zeros(n)
 
     cdef _banded_front(self, fu_banded_front *banded, elimination):
         """Allocate the front that may be a band of at most half of its size."""

@@ -35,10 +35,10 @@ FU_INLINE void PREFIX(fill_band)(const fu_fronts *t, fu_factors *f, int k, const
         for (int e = b->first[j]; e < b->first[j + 1]; ++e) to[b->place[b->rows[e]]] = matrix[(long)j * n + b->rows[e]];
     }
     for (int c = t->child[k]; c >= 0; c = t->sibling[c]) {
-        const int size = f->size[c], done = f->done[c], rest = size - done;
-        const int *in_parent = t->in_parent + t->first[c] + t->pivots[c];
-        const NUMBER *column = PREFIX(front)(f, c) + done * size + done;
-        for (int j = 0; j < rest; ++j, column += size) {
+        const int rest = f->size[c] - f->done[c], *in_parent = t->in_parent + t->first[c] + t->pivots[c];
+        int between;
+        const NUMBER *column = PREFIX(complement)(f, c, &between);
+        for (int j = 0; j < rest; ++j, column += between) {
             NUMBER *to = PREFIX(column_of)(b, stride, in_parent[j]);
             for (int i = 0; i < rest; ++i) ADD(to[b->place[in_parent[i]]], column[i]);
         }

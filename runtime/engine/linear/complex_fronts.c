@@ -30,11 +30,12 @@ static void eliminated(const fu_complex *F, int n, int from, int to, fu_complex 
         for (int i = k + 1; i < n; ++i) fu_complex_subtract_product(&column[i], F[k * n + i], column[k]);
 }
 
-/* Computes the first `done` of n unknowns from their right side and the others. */
-static void substituted(const fu_complex *F, int n, int done, fu_complex *x)
+/* Computes the first `done` of n unknowns from their right side and the others; stride: of the columns of the
+ * others. */
+static void substituted(const fu_complex *F, int stride, int n, int done, fu_complex *x)
 {
     for (int k = n - 1; k >= 0; --k) {
-        const fu_complex *column = F + k * n;
+        const fu_complex *column = k < done ? F + k * n : F + done * n + (k - done) * stride;
         if (k < done) x[k] = fu_complex_product(x[k], column[k]);
         for (int i = 0; i < (k < done ? k : done); ++i) fu_complex_subtract_product(&x[i], column[i], x[k]);
     }

@@ -36,8 +36,9 @@ void fu_complex_system_take(fu_complex_system *c, const fu_system *s, double *sc
     c->factors.numbers = (double *)take(scratch, taken, real->most_numbers);
     c->factors.x = (double *)take(scratch, taken, 2 * m);
     int **integers[] = {&c->factors.unknowns, &c->factors.map,    &c->factors.start, &c->factors.first,
-                        &c->factors.size,     &c->factors.pivots, &c->factors.done};
-    const long fronts = s->fronts->n, lengths[] = {real->most_unknowns, m, fronts, fronts, fronts, fronts, fronts};
+                        &c->factors.size,     &c->factors.pivots, &c->factors.done,  &c->factors.complement};
+    const long fronts = s->fronts->n;
+    const long lengths[] = {real->most_unknowns, m, fronts, fronts, fronts, fronts, fronts, fronts};
     for (int k = 0; k < (int)(sizeof integers / sizeof *integers); ++k)
         *integers[k] = (int *)fu_take(scratch, taken, FU_DOUBLES(lengths[k], int));
     fu_banded_front *banded = &c->factors.banded;

@@ -86,16 +86,18 @@ FU_INLINE void substitute_one(const double *F, int n, int k, double *restrict x)
     subtract_one(k - 1, d, x[k - 1], x);
 }
 
-/* Computes the first `done` of n unknowns from their right side and the others, four columns at once. */
-FU_INLINE void substituted(const double *F, int n, int done, double *restrict x)
+/* Computes the first `done` of n unknowns from their right side and the others, four columns at once; stride: of the
+ * columns of the others. */
+FU_INLINE void substituted(const double *F, int stride, int n, int done, double *restrict x)
 {
+    const double *beside = F + done * n;
     int k = n;
     for (; k - 4 >= done; k -= 4) {
-        const double *d = F + (k - 1) * n, *c = d - n, *b = c - n, *a = b - n;
+        const double *d = beside + (k - 1 - done) * stride, *c = d - stride, *b = c - stride, *a = b - stride;
         subtract_four(done, (const double *const[4]){a, b, c, d},
                       (const double[4]){x[k - 4], x[k - 3], x[k - 2], x[k - 1]}, x);
     }
-    for (; k > done; --k) subtract_one(done, F + (k - 1) * n, x[k - 1], x);
+    for (; k > done; --k) subtract_one(done, beside + (k - 1 - done) * stride, x[k - 1], x);
     for (; k >= 4; k -= 4) substitute_four(F, n, k, x);
     for (; k > 0; --k) substitute_one(F, n, k, x);
 }
@@ -104,6 +106,7 @@ FU_INLINE void substituted(const double *F, int n, int done, double *restrict x)
  * Sizes known to the compiler take half the instructions. */
 enum { LINK_PIVOTS = FU_FRAME_DOFS + 3, LINK = LINK_PIVOTS + 3 };
 _Static_assert(LINK_PIVOTS == 4 + 4 + 1, "as forward and backward do them");
+_Static_assert(LINK <= FU_UNPACKED_FRONT, "backward takes the columns of others where they are");
 
 FU_INLINE void forward(const double *F, int n, int done, double *restrict x)
 {
@@ -116,10 +119,10 @@ FU_INLINE void forward(const double *F, int n, int done, double *restrict x)
     eliminate_one(F, LINK, 8, x);
 }
 
-FU_INLINE void backward(const double *F, int n, int done, double *restrict x)
+FU_INLINE void backward(const double *F, int stride, int n, int done, double *restrict x)
 {
     if (n != LINK || done != LINK_PIVOTS) {
-        substituted(F, n, done, x);
+        substituted(F, stride, n, done, x);
         return;
     }
     for (int k = LINK; k > LINK_PIVOTS; --k) subtract_one(LINK_PIVOTS, F + (k - 1) * LINK, x[k - 1], x);

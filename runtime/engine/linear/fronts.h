@@ -38,14 +38,21 @@ void fu_order_band(const fu_fronts *fronts, fu_banded_front *banded, int k);
 void fu_find_width(const fu_fronts *fronts, fu_banded_front *banded, int k);
 int fu_clear_entries(fu_banded_front *banded, int n, double *matrix);
 
-/* Factors of such a matrix. A front may delay pivots to its parent, so that sizes are known only afterwards. */
+/* Unknowns of a front up to which its factors stay where its Schur complement leaves gaps between them. */
+enum { FU_UNPACKED_FRONT = 16 };
+
+/* Factors of such a matrix. A front may delay pivots to its parent, so that sizes are known only afterwards. A front is
+ * factored behind the factors of those before. Then they are packed: the columns of its pivots, after them the rows of
+ * its pivots in the other columns. Its Schur complement goes to the end of the memory until its parent is assembled. */
 typedef struct {
-    double *numbers; /* fronts, column by column, one after the other; complex numbers take two doubles */
+    double *numbers; /* factors, from the start; Schur complements, before the end; complex numbers take two doubles */
+    int end, low;    /* in `numbers`: the end of the factors, the start of the Schur complements */
     int *unknowns;   /* of each: those of its rows, then those of its columns, in the order of elimination */
     int *map;        /* m: places of a child's unknowns in its parent */
     double *x;       /* 2 m numbers: the solution; of a front, the right side */
     int *start, *first, *size, *pivots,
         *done;                       /* n: in `numbers`, in `unknowns`; unknowns, candidates for pivots, and pivots */
+    int *complement;                 /* n: Schur complement in `numbers`, -1 for none there */
     int most_numbers, most_unknowns; /* capacity of the memory */
     fu_banded_front banded;
 } fu_factors;

@@ -2,17 +2,81 @@
  * linear/fronts.c, linear/complex_fronts.c. A file that includes this has defined NUMBER, PREFIX(name), SIZE(x),
  * DIVIDE(x, by), TIMES(a, b), ADD(to, x), ZERO, ONE, FACTOR (LAPACK's getrf), APPLY, which eliminates pivots from a
  * column, FORWARD, which does so for a right side with all pivots of a front, and BACK, which computes the first
- * unknowns of a front from the others.
+ * unknowns of a front from the others, given the distance of their columns.
  *
  * A pivot is taken from the fully summed rows and columns, if it is not much smaller than the largest entry of its
  * column. Columns without a pivot are delayed to the parent front. The last front has no other rows: LAPACK factors
  * it. Pivots are stored as their inverses. */
+#include <string.h>
+
 /* of a column's largest entry: least pivot. Rounding grows by at most its inverse. */
 #define PIVOT_THRESHOLD 1e-5
 
 FU_INLINE NUMBER *PREFIX(front)(const fu_factors *f, int k)
 {
     return (NUMBER *)f->numbers + f->start[k];
+}
+
+/* Returns the Schur complement of a front, and the distance of its columns. */
+FU_INLINE const NUMBER *PREFIX(complement)(const fu_factors *f, int k, int *stride)
+{
+    const int size = f->size[k], done = f->done[k];
+    *stride = f->complement[k] < 0 ? size : size - done;
+    return f->complement[k] < 0 ? PREFIX(front)(f, k) + done * size + done : (NUMBER *)f->numbers + f->complement[k];
+}
+
+/* Returns whether n numbers fit between the packed factors and the Schur complements of the first k fronts, which it
+ * moves together at the end of the memory where they do not. */
+FU_INLINE int PREFIX(makes_room)(fu_factors *f, int k, int n)
+{
+    NUMBER *numbers = (NUMBER *)f->numbers;
+    if (n <= f->low - f->end) return 1;
+    f->low = f->most_numbers;
+    for (int i = 0; i < k; ++i) {
+        if (f->complement[i] < 0) continue;
+        const int rest = f->size[i] - f->done[i];
+        f->low -= rest * rest;
+        memmove(numbers + f->low, numbers + f->complement[i], sizeof(NUMBER) * (size_t)(rest * rest));
+        f->complement[i] = f->low;
+    }
+    return n <= f->low - f->end;
+}
+
+/* Frees the memory of the Schur complements of the children of front k. */
+FU_INLINE void PREFIX(free_children)(const fu_fronts *t, fu_factors *f, int k)
+{
+    for (int found = 1; found;) {
+        found = 0;
+        for (int c = t->child[k]; c >= 0; c = t->sibling[c])
+            if (f->complement[c] == f->low) {
+                const int rest = f->size[c] - f->done[c];
+                f->low += rest * rest;
+                f->complement[c] = -1;
+                found = 1;
+            }
+    }
+    for (int c = t->child[k]; c >= 0; c = t->sibling[c]) f->complement[c] = -1;
+}
+
+/* Packs the factors of a front, and moves its Schur complement to those of others; returns 0, or 1 without memory. */
+FU_INLINE int PREFIX(pack)(fu_factors *f, int k)
+{
+    const int n = f->size[k], done = f->done[k], rest = n - done;
+    NUMBER *F = PREFIX(front)(f, k), *beside = F + done * n;
+    if (n <= FU_UNPACKED_FRONT || !rest) {
+        f->end += n * n;
+        return 0;
+    }
+    if (!PREFIX(makes_room)(f, k, n * n + rest * rest)) return 1;
+    f->low -= rest * rest;
+    f->complement[k] = f->low;
+    NUMBER *to = (NUMBER *)f->numbers + f->low;
+    for (int j = 0; j < rest; ++j) {
+        memcpy(to + j * rest, beside + j * n + done, sizeof(NUMBER) * (size_t)rest);
+        memmove(beside + j * done, beside + j * n, sizeof(NUMBER) * (size_t)done);
+    }
+    f->end += done * (n + rest);
+    return 0;
 }
 
 /* Copies the entries of the matrix of a front of n unknowns, with `delayed` ones between its own p and their s
@@ -46,8 +110,9 @@ FU_INLINE void PREFIX(add_child)(const fu_fronts *t, fu_factors *f, int k, int c
         f->map[i] = next++;
     }
     for (int i = left; i < rest; ++i) f->map[i] = in_parent[i] < p ? in_parent[i] : in_parent[i] + delayed;
-    const NUMBER *column = PREFIX(front)(f, c) + done * size + done;
-    for (int j = 0; j < rest; ++j, column += size) {
+    int stride;
+    const NUMBER *column = PREFIX(complement)(f, c, &stride);
+    for (int j = 0; j < rest; ++j, column += stride) {
         NUMBER *to = PREFIX(front)(f, k) + f->map[j] * n;
         for (int i = 0; i < rest; ++i) ADD(to[f->map[i]], column[i]);
     }
@@ -61,11 +126,11 @@ FU_INLINE int PREFIX(assemble)(const fu_fronts *t, const NUMBER *matrix, fu_fact
     int delayed = 0;
     for (int c = t->child[k]; c >= 0; c = t->sibling[c]) delayed += f->pivots[c] - f->done[c];
     const int q = p + delayed, n = q + s;
-    f->start[k] = k ? f->start[k - 1] + f->size[k - 1] * f->size[k - 1] : 0;
+    f->start[k] = f->end;
     f->first[k] = k ? f->first[k - 1] + 2 * f->size[k - 1] : 0;
     f->size[k] = n;
     f->pivots[k] = q;
-    if (f->start[k] > f->most_numbers - n * n || f->first[k] > f->most_unknowns - 2 * n) return 1;
+    if (f->first[k] > f->most_unknowns - 2 * n || !PREFIX(makes_room)(f, k, n * n)) return 1;
     int *rows = f->unknowns + f->first[k], *columns = rows + n;
     const int *unknown = t->unknown + t->first[k];
     for (int i = 0; i < p; ++i) rows[i] = columns[i] = unknown[i];
@@ -73,6 +138,7 @@ FU_INLINE int PREFIX(assemble)(const fu_fronts *t, const NUMBER *matrix, fu_fact
     PREFIX(copy)(matrix + t->start[k], p, s, delayed, PREFIX(front)(f, k));
     for (int c = t->child[k], next = p; c >= 0; next += f->pivots[c] - f->done[c], c = t->sibling[c])
         PREFIX(add_child)(t, f, k, c, p, next);
+    PREFIX(free_children)(t, f, k);
     return 0;
 }
 
@@ -157,11 +223,15 @@ FU_INLINE int PREFIX(factor_last)(fu_factors *f, NUMBER *F, int n, int *rows, co
 /* Factors the matrix; returns 0, or 1 + the unknown at which it is singular or exceeds the memory. */
 FU_INLINE int PREFIX(factor)(const fu_fronts *t, const NUMBER *matrix, fu_factors *f, const fu_lapack *lapack)
 {
+    f->end = 0;
+    f->low = f->most_numbers;
     for (int k = 0; k < t->n; ++k) {
         int info = 0;
+        f->complement[k] = -1;
         if (k == f->banded.front && PREFIX(factor_banded)(t, matrix + t->start[k], f, k, lapack, &info)) {
             if (info) return 1 + t->unknown[t->first[k] + info - 1];
-            f->start[k] = k ? f->start[k - 1] + f->size[k - 1] * f->size[k - 1] : 0;
+            PREFIX(free_children)(t, f, k);
+            f->start[k] = f->end;
             f->first[k] = k ? f->first[k - 1] + 2 * f->size[k - 1] : 0;
             f->size[k] = f->pivots[k] = f->done[k] = 0;
             continue;
@@ -175,6 +245,7 @@ FU_INLINE int PREFIX(factor)(const fu_fronts *t, const NUMBER *matrix, fu_factor
             f->done[k] = n;
             if (info) return 1 + columns[info - 1];
         }
+        if (PREFIX(pack)(f, k)) return 1 + t->unknown[t->first[k]];
     }
     return 0;
 }
@@ -206,7 +277,7 @@ FU_INLINE void PREFIX(solve)(const fu_fronts *t, const fu_factors *f, NUMBER *y)
         const int n = f->size[k], done = f->done[k], *rows = f->unknowns + f->first[k], *columns = rows + n;
         const NUMBER *F = PREFIX(front)(f, k);
         for (int i = 0; i < n; ++i) local[i] = i < done ? y[rows[i]] : x[columns[i]];
-        BACK(F, n, done, local);
+        BACK(F, n > FU_UNPACKED_FRONT ? done : n, n, done, local);
         for (int i = 0; i < done; ++i) x[columns[i]] = local[i];
     }
     for (int i = 0; i < t->m; ++i) y[i] = x[i];
