@@ -11,6 +11,7 @@
 #define DIVIDE(x, by) fu_complex_quotient(x, by)
 #define ADD(to, x) ((to).re += (x).re, (to).im += (x).im)
 #define APPLY eliminated
+#define APPLY_TO_TWO eliminated_from_two
 #define FORWARD(F, n, done, x) eliminated(F, n, 0, done, x)
 #define BACK substituted
 #define FACTOR zgetrf
@@ -28,6 +29,12 @@ static void eliminated(const fu_complex *F, int n, int from, int to, fu_complex 
 {
     for (int k = from; k < to; ++k)
         for (int i = k + 1; i < n; ++i) fu_complex_subtract_product(&column[i], F[k * n + i], column[k]);
+}
+
+static void eliminated_from_two(const fu_complex *F, int n, int from, int to, fu_complex *column)
+{
+    eliminated(F, n, from, to, column);
+    eliminated(F, n, from, to, column + n);
 }
 
 /* Computes the first `done` of n unknowns from their right side and the others; stride: of the columns of the

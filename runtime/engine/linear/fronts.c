@@ -11,6 +11,7 @@
 #define DIVIDE(x, by) ((x) / (by))
 #define ADD(to, x) ((to) += (x))
 #define APPLY eliminated
+#define APPLY_TO_TWO eliminated_from_two
 #define FORWARD forward
 #define BACK backward
 #define FACTOR dgetrf
@@ -29,6 +30,26 @@ FU_INLINE void subtract_four(int n, const double *const column[4], const double 
     for (; i < n; ++i) to[i] -= a[i] * w + b[i] * x + c[i] * y + d[i] * z;
 }
 
+/* Subtracts from twice n numbers the sum of four columns, at a distance of `stride`, times factors of each. */
+FU_INLINE void subtract_four_from_two(int n, const double *column, int stride, const double f[4], const double g[4],
+                                      double *restrict to, double *restrict other)
+{
+    const double *a = column, *b = a + stride, *c = b + stride, *d = c + stride;
+    const double w = f[0], x = f[1], y = f[2], z = f[3];
+    const double p = g[0], q = g[1], r = g[2], s = g[3];
+    int i = 0;
+    for (; i + FU_SIMD_WIDTH <= n; i += FU_SIMD_WIDTH) {
+        const fu_simd_block u = *(const fu_simd_block *)(a + i), v = *(const fu_simd_block *)(b + i);
+        const fu_simd_block m = *(const fu_simd_block *)(c + i), l = *(const fu_simd_block *)(d + i);
+        *(fu_simd_block *)(to + i) -= u * w + v * x + m * y + l * z;
+        *(fu_simd_block *)(other + i) -= u * p + v * q + m * r + l * s;
+    }
+    for (; i < n; ++i) {
+        to[i] -= a[i] * w + b[i] * x + c[i] * y + d[i] * z;
+        other[i] -= a[i] * p + b[i] * q + c[i] * r + d[i] * s;
+    }
+}
+
 /* Subtracts from n numbers a column times a factor. */
 FU_INLINE void subtract_one(int n, const double *column, double factor, double *restrict to)
 {
@@ -38,17 +59,24 @@ FU_INLINE void subtract_one(int n, const double *column, double factor, double *
     for (; i < n; ++i) to[i] -= column[i] * factor;
 }
 
+/* Computes the factors of four pivots from k on in a column, and eliminates them from each other. */
+FU_INLINE void factors_of_four(const double *F, int n, int k, double *restrict column, double factor[4])
+{
+    const double *a = F + k * n, *b = a + n, *c = b + n;
+    factor[0] = column[k];
+    factor[1] = column[k + 1] - a[k + 1] * factor[0];
+    factor[2] = column[k + 2] - a[k + 2] * factor[0] - b[k + 2] * factor[1];
+    factor[3] = column[k + 3] - a[k + 3] * factor[0] - b[k + 3] * factor[1] - c[k + 3] * factor[2];
+    for (int i = 1; i < 4; ++i) column[k + i] = factor[i];
+}
+
 /* Eliminates four pivots from k on from a column of n. */
 FU_INLINE void eliminate_four(const double *F, int n, int k, double *restrict column)
 {
-    const double *a = F + k * n, *b = a + n, *c = b + n, *d = c + n;
-    const double w = column[k], x = column[k + 1] - a[k + 1] * w, y = column[k + 2] - a[k + 2] * w - b[k + 2] * x;
-    const double z = column[k + 3] - a[k + 3] * w - b[k + 3] * x - c[k + 3] * y;
-    column[k + 1] = x;
-    column[k + 2] = y;
-    column[k + 3] = z;
-    subtract_four(n - k - 4, (const double *const[4]){a + k + 4, b + k + 4, c + k + 4, d + k + 4},
-                  (const double[4]){w, x, y, z}, column + k + 4);
+    const double *a = F + k * n + k + 4, *b = a + n, *c = b + n, *d = c + n;
+    double factor[4];
+    factors_of_four(F, n, k, column, factor);
+    subtract_four(n - k - 4, (const double *const[4]){a, b, c, d}, factor, column + k + 4);
 }
 
 FU_INLINE void eliminate_one(const double *F, int n, int k, double *restrict column)
@@ -62,6 +90,25 @@ FU_INLINE void eliminated(const double *F, int n, int from, int to, double *rest
     int k = from;
     for (; k + 4 <= to; k += 4) eliminate_four(F, n, k, column);
     for (; k < to; ++k) eliminate_one(F, n, k, column);
+}
+
+/* Eliminates the pivots `from` to `to` from two columns of n, as `eliminated` does from each: pivots pass through
+ * memory once for both. */
+FU_INLINE void eliminated_from_two(const double *F, int n, int from, int to, double *restrict column)
+{
+    double *restrict other = column + n;
+    int k = from;
+    for (; k + 4 <= to; k += 4) {
+        const double *const first = F + k * n + k + 4;
+        double f[4], g[4];
+        factors_of_four(F, n, k, column, f);
+        factors_of_four(F, n, k, other, g);
+        subtract_four_from_two(n - k - 4, first, n, f, g, column + k + 4, other + k + 4);
+    }
+    for (; k < to; ++k) {
+        eliminate_one(F, n, k, column);
+        eliminate_one(F, n, k, other);
+    }
 }
 
 /* Computes the four pivots before k from their right side, and subtracts their contribution from the right side of

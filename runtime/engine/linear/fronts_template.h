@@ -1,8 +1,8 @@
 /* Gaussian elimination by fronts (Duff & Reid 1983) with threshold pivoting, for real and for complex numbers:
  * linear/fronts.c, linear/complex_fronts.c. A file that includes this has defined NUMBER, PREFIX(name), SIZE(x),
  * DIVIDE(x, by), TIMES(a, b), ADD(to, x), ZERO, ONE, FACTOR (LAPACK's getrf), APPLY, which eliminates pivots from a
- * column, FORWARD, which does so for a right side with all pivots of a front, and BACK, which computes the first
- * unknowns of a front from the others, given the distance of their columns.
+ * column, APPLY_TO_TWO, from it and the next one, FORWARD, which does so for a right side with all pivots of a front,
+ * and BACK, which computes the first unknowns of a front from the others, given the distance of their columns.
  *
  * A pivot is taken from the fully summed rows and columns, if it is not much smaller than the largest entry of its
  * column. Columns without a pivot are delayed to the parent front. The last front has no other rows: LAPACK factors
@@ -202,7 +202,14 @@ FU_INLINE int PREFIX(eliminate)(NUMBER *F, int n, int q, int *rows, int *columns
             before = k;
         }
     }
-    for (int j = k; j < n; ++j) APPLY(F, n, updated[j], k, F + j * n);
+    int j = k;
+    for (; j + 1 < n; j += 2) {
+        const int both = updated[j] > updated[j + 1] ? updated[j] : updated[j + 1];
+        APPLY(F, n, updated[j], both, F + j * n);
+        APPLY(F, n, updated[j + 1], both, F + (j + 1) * n);
+        APPLY_TO_TWO(F, n, both, k, F + j * n);
+    }
+    if (j < n) APPLY(F, n, updated[j], k, F + j * n);
     return k;
 }
 
