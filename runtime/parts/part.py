@@ -166,7 +166,7 @@ class Part(BaseModel, metaclass=_TranslatingType):
         return self._copied(update or {}, self.__pydantic_fields_set__.union(update or ()))
 
     def __copy__(self) -> Self:
-        """Return a copy."""
+        """Return a copy with the same values."""
         return self.model_copy() if self.__pydantic_private__ is None else super().__copy__()
 
     def _copied(self, update: Mapping[str, Any], given: set[str]) -> Self:
