@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from heapq import heapify, heappop, heappush
 from typing import Any
 
@@ -85,7 +85,7 @@ class Elimination:
         before = np.cumsum(sizes**2 - freed) - (sizes**2 - freed)
         return float((before + sizes**2 + moved).max())
 
-    @property
+    @cached_property
     def size(self) -> int:
         """Return the number of entries of the matrix."""
         return int((self.pivots * (self.pivots + 2 * self.neighbours)).sum())

@@ -44,6 +44,10 @@ class OfDrawing(str):
     """A message on the drawn state, which does not hold for runs from another state."""
 
 
+HOLDERS = dict, list
+"""Classes of what a scene holds that its copies hold anew."""
+
+
 def _refuse(*given: Any, **named: Any) -> Never:
     """Raise SceneError: parts are for reading."""
     raise SceneError("scene", "its parts are for reading", "add one with the scene's method for its kind, or take "
@@ -297,7 +301,7 @@ class SceneData:
         """Return a scene of the same parts, to which parts can be added independently."""
         made = copy(self)
         held = vars(made)
-        held.update({name: value.copy() for name, value in held.items() if isinstance(value, dict | list)})
+        held.update({name: value.copy() for name, value in held.items() if isinstance(value, HOLDERS)})
         return made
 
     def replaced(self, made: Callable[[Part], Part]) -> Self:
