@@ -110,7 +110,7 @@ class ComputedWhenRead(Mapping[str, Variable]):
         return self._found
 
     def __getitem__(self, name: str) -> Variable:
-        """Return a result."""
+        """Return a result by its name; its part is computed if it was not. Raises KeyError."""
         found = self._of(name)
         if found is None:
             raise KeyError(name)
