@@ -1,5 +1,5 @@
-/* Random systems of the engine's own linear algebra: complex bands, inverses of bands, small matrices. Prints the
- * largest residual of each, of 400, in units of rounding; tests/engine/test_small_systems.py.
+/* Random systems of the engine's own linear algebra: bands, complex bands, inverses of bands, small matrices. Prints
+ * the largest residual of each, of 400, in units of rounding; tests/engine/test_small_systems.py.
  */
 #include "linear/complex_system.h"
 
@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { CASES = 400, MAX_SIZE = FU_MAX_INVERTED, MAX_WIDTH = 32 };
+enum { CASES = 400, MAX_SIZE = FU_MAX_INVERTED, MAX_WIDTH = 32, WIDE = 48 };
 
 static double A[MAX_SIZE * MAX_SIZE], x[4 * MAX_SIZE], y[4 * MAX_SIZE], bx[MAX_SIZE], by[MAX_SIZE];
 
@@ -69,6 +69,29 @@ static double complex_band(int n, int width, int symmetric)
     return worst;
 }
 
+/* A symmetric positive definite band, also one wider than those of elements alone: what is left of its equations. */
+static double real_band(int n, int width)
+{
+    static double L[(WIDE + 1) * (MAX_SIZE + WIDE + 2 * FU_BAND_GROUP)];
+    const int stride = width + 1;
+    double worst = 0.0;
+    for (int i = 0; i < n * n; ++i) A[i] = 0.0;
+    for (int i = 0; i < stride * (n + WIDE + 2 * FU_BAND_GROUP); ++i) L[i] = 0.0;
+    for (int j = 0; j < n; ++j)
+        for (int i = j; i < n && i - j <= width; ++i)
+            A[i * n + j] = A[j * n + i] = L[j * stride + i - j] = i == j ? width + 3.0 : number();
+    for (int i = 0; i < 4 * MAX_SIZE; ++i) x[i] = 0.0;
+    for (int i = 0; i < n; ++i) bx[i] = x[i] = number();
+    if (fu_band_factor(n, width, L)) return INFINITY;
+    fu_band_solve(n, width, L, 0, x);
+    for (int i = 0; i < n; ++i) {
+        double left = -bx[i];
+        for (int j = 0; j < n; ++j) left += A[i * n + j] * x[j];
+        worst = larger(worst, fabs(left));
+    }
+    return worst;
+}
+
 /* The inverse of a band that is factored already, times a part of a column: how far it is from the substitution. */
 static double inverse(int n, int width)
 {
@@ -111,17 +134,18 @@ static double small_matrix(int n)
 
 int main(void)
 {
-    double band = 0.0, unsymmetric = 0.0, inverted = 0.0, small = 0.0;
+    double real = 0.0, band = 0.0, unsymmetric = 0.0, inverted = 0.0, small = 0.0;
     int pivot[2];
     double singular[4] = {1.0, 2.0, 2.0, 4.0};
     for (int k = 0; k < CASES; ++k) {
         const int n = 1 + rand() % MAX_SIZE, width = FU_BAND_GROUP - 1 + rand() % (MAX_WIDTH - FU_BAND_GROUP);
+        real = larger(real, real_band(n, FU_BAND_GROUP - 1 + rand() % (WIDE - FU_BAND_GROUP + 2)));
         band = larger(band, complex_band(n, width, 1));
         unsymmetric = larger(unsymmetric, complex_band(n, width, 0));
         inverted = larger(inverted, inverse(n, width));
         small = larger(small, small_matrix(1 + rand() % FU_MAX_SMALL));
     }
-    printf("%g %g %g %g %d\n", band / DBL_EPSILON, unsymmetric / DBL_EPSILON, inverted / DBL_EPSILON,
-           small / DBL_EPSILON, fu_small_factor(2, singular, pivot));
+    printf("%g %g %g %g %g %d\n", real / DBL_EPSILON, band / DBL_EPSILON, unsymmetric / DBL_EPSILON,
+           inverted / DBL_EPSILON, small / DBL_EPSILON, fu_small_factor(2, singular, pivot));
     return 0;
 }

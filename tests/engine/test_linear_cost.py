@@ -138,9 +138,9 @@ def test_the_band_of_many_slides_is_as_wide_for_more_of_them():
 
 @pytest.mark.parametrize("integrator", ["genalpha", "energy", "radau"])
 def test_dividing_a_cable_with_many_slides_changes_nothing_but_rounding(integrator, monkeypatch):
-    """Slides pass from one part of the cable to the next."""
+    """Slides pass from one part of the cable to the next. Steps of 20 ms fail, and rounding decides on their halves."""
     def motion() -> np.ndarray:
-        run = slides(28).run(duration=0.6, output_step=0.6, step=2e-2, integrator=integrator)
+        run = slides(28).run(duration=0.6, output_step=0.6, step=5e-3, integrator=integrator)
         return run["wire.nodal_vectors"][-1]
 
     def chains() -> int:

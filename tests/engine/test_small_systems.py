@@ -16,7 +16,8 @@ def test_residuals_are_rounding(tmp_path):
     subprocess.run([*compiler(), "-std=c11", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror", f"-I{drift.folder()}",
                     f"-I{ENGINE}", PROGRAM, *SOURCES, "-lm", "-o", program], check=True)
     done = subprocess.run([program], capture_output=True, text=True, check=True)
-    band, unsymmetric, inverse, small, singular = map(float, done.stdout.split())
+    real, band, unsymmetric, inverse, small, singular = map(float, done.stdout.split())
+    assert 0 < real < 10
     assert 0 < band < 10
     assert 0 < unsymmetric < 10
     assert 0 < inverse < 10

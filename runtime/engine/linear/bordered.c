@@ -47,12 +47,12 @@ static int size_of(const fu_system *s, int chain)
 }
 
 /* Factors a chain in L if it is symmetric and positive definite; returns whether it is. */
-static int factor_symmetric(fu_system *s, const fu_lapack *lapack, int chain)
+static int factor_symmetric(fu_system *s, int chain)
 {
-    if (fu_is_twisted(s, chain)) return !fu_twisted_factor(s, lapack, chain);
+    if (fu_is_twisted(s, chain)) return !fu_twisted_factor(s, chain);
     double *L = fu_factor_of(s, chain);
     return fu_pack(s, (fu_span){s->chains[chain], s->chains[chain + 1]}, 0, L) &&
-           !fu_band_factor(lapack, size_of(s, chain), s->width, L);
+           !fu_band_factor(size_of(s, chain), s->width, L);
 }
 
 /* Factors a chain in L and U if it is nearly symmetric and positive definite; returns whether it is. */
@@ -68,9 +68,9 @@ int fu_system_factor_band(fu_system *s, const fu_lapack *lapack)
     int width = s->width, rows = FU_BAND_ROWS(width), info = 0;
     s->definite = 1;
     for (int c = 0; c < s->n_chains; ++c) {
-        s->factorisations[c] = factor_symmetric(s, lapack, c) ? FU_SYMMETRIC
-                               : factor_unpivoted(s, c)       ? FU_UNPIVOTED
-                                                              : FU_PIVOTED;
+        s->factorisations[c] = factor_symmetric(s, c)   ? FU_SYMMETRIC
+                               : factor_unpivoted(s, c) ? FU_UNPIVOTED
+                                                        : FU_PIVOTED;
         s->definite &= s->factorisations[c] == FU_SYMMETRIC;
         if (s->factorisations[c] != FU_PIVOTED) continue;
         int n = size_of(s, c), first = s->chains[c];
@@ -114,7 +114,7 @@ static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, 
         fu_band_solve(n, width, fu_factor_of(s, chain), of.first - start, x + start);
     else if (s->factorisations[chain] == FU_UNPIVOTED) {
         fu_band_forward(n, width, s->L + fu_factor_at(s, chain), of.first - start, x + start);
-        if (n) fu_band_backward(n, width, s->U + fu_factor_at(s, chain), x + start);
+        fu_band_backward(n, width, s->U + fu_factor_at(s, chain), x + start);
     } else
         lapack->dgbtrs("N", &n, &width, &width, &one, s->K + (long)start * rows, &rows, s->pivot_band + start,
                        x + start, &n, &info);

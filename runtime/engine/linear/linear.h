@@ -11,7 +11,6 @@
 #define FU_LAPACK_FUNCTIONS(LAPACK)                                                                                    \
     LAPACK(dgbtrf, int *, int *, int *, int *, double *, int *, int *, int *)                                          \
     LAPACK(dgbtrs, char *, int *, int *, int *, int *, double *, int *, int *, double *, int *, int *)                 \
-    LAPACK(dpbtrf, char *, int *, int *, double *, int *, int *)                                                       \
     LAPACK(dgetrf, int *, int *, double *, int *, int *, int *)                                                        \
     LAPACK(zgbtrf, int *, int *, int *, int *, void *, int *, int *, int *)                                            \
     LAPACK(zgbtrs, char *, int *, int *, int *, int *, void *, int *, int *, void *, int *, int *)                     \
@@ -108,8 +107,8 @@ typedef struct {
     fu_threads *threads; /* null for one */
 } fu_system;
 
-int fu_band_factor(const fu_lapack *lapack, int n, int width, double *A);
-void fu_band_scale(int n, int width, double *A);
+void fu_band_eliminate(int columns, int n, int width, double *A, int *failed);
+int fu_band_factor(int n, int width, double *A);
 void fu_band_forward(int n, int width, const double *A, int first, double *x);
 void fu_band_backward(int n, int width, const double *A, double *x);
 void fu_band_solve(int n, int width, const double *A, int first, double *x);
@@ -130,7 +129,7 @@ int fu_small_factor(int n, double *A, int *pivot);
 void fu_small_solve(int n, const double *A, const int *pivot, double *x);
 
 int fu_is_twisted(const fu_system *system, int chain);
-int fu_twisted_factor(fu_system *system, const fu_lapack *lapack, int chain);
+int fu_twisted_factor(fu_system *system, int chain);
 void fu_twisted_solve(const fu_system *system, int chain, fu_span rows, double *x);
 
 void fu_set_times(fu_threads *threads, int n, double factor, const double *y, double *x);

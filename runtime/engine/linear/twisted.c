@@ -5,9 +5,8 @@
  * threads.
  *
  * A chain of n unknowns has n = count + middle + count. Each half is a banded matrix of count + middle columns, the
- * second one backwards from the chain's end. The last columns of Cholesky's factors of both, L1 and L2, hold the
- * Schur complement of the middle block A after one half: A - U1 = L1 L1' and A - U2 = L2 L2'. After both halves it
- * is A - U1 - U2 = L1 L1' + L2 L2' - A. */
+ * second one backwards from the chain's end. Its last columns hold the Schur complement of the middle block A after
+ * one half: A - U1 and A - U2. After both halves it is A - U1 - U2 = (A - U1) + (A - U2) - A. */
 #include "linear/linear.h"
 
 /* A chain in halves. L: columns of either half, those of the first one with the middle's. */
@@ -19,7 +18,6 @@ typedef struct {
 /* A job shared by two threads, half each. */
 typedef struct job {
     const fu_system *system;
-    const fu_lapack *lapack;
     chain_in_halves chain;
     fu_span rows; /* nonzero rows of x */
     double *x;
@@ -46,19 +44,6 @@ static chain_in_halves in_halves(const fu_system *s, int chain)
     return (chain_in_halves){start, n, count, middle, {L, L + (long)(count + middle + FU_BAND_GROUP) * (s->width + 1)}};
 }
 
-/* Replaces a banded Cholesky factor L by A = L L'. */
-static void multiply(int n, int width, double *L)
-{
-    const int stride = width + 1;
-    for (int j = n - 1; j >= 0; --j)
-        for (int i = n - 1 - j < width ? n - 1 : j + width; i >= j; --i) {
-            double sum = 0.0;
-            for (int k = i > width ? i - width : 0; k <= j; ++k)
-                sum += L[(long)k * stride + i - k] * L[(long)k * stride + j - k];
-            L[(long)j * stride + i - j] = sum;
-        }
-}
-
 /* Eliminates half a chain; the Schur complement of the middle is in the last columns. The half's entry of pivot_band,
  * otherwise used by factorisations with pivots alone, becomes nonzero if the half is not symmetric or not positive
  * definite. */
@@ -66,22 +51,19 @@ static void eliminate(const job *job, int half)
 {
     const fu_system *s = job->system;
     const chain_in_halves *c = &job->chain;
-    int columns = c->count + c->middle, width = s->width, stride = width + 1, info = 1;
+    const int columns = c->count + c->middle;
+    int failed = 1;
     double *L = c->L[half];
     const fu_span rows =
         half ? (fu_span){c->start + c->count, c->start + c->n} : (fu_span){c->start, c->start + columns};
-    if (fu_pack(s, rows, half, L)) job->lapack->dpbtrf("L", &columns, &width, L, &stride, &info);
-    if (!info) {
-        multiply(c->middle, width, L + (long)c->count * stride);
-        fu_band_scale(c->count, width, L);
-    }
-    s->pivot_band[c->start + half] = info;
+    if (fu_pack(s, rows, half, L)) fu_band_eliminate(c->count, columns, s->width, L, &failed);
+    s->pivot_band[c->start + half] = failed;
 }
 
 /* Factors a chain of K; returns nonzero if it is not symmetric or not positive definite. */
-int fu_twisted_factor(fu_system *s, const fu_lapack *lapack, int chain)
+int fu_twisted_factor(fu_system *s, int chain)
 {
-    const job job = {s, lapack, in_halves(s, chain), {0, 0}, 0, eliminate};
+    const job job = {s, in_halves(s, chain), {0, 0}, 0, eliminate};
     const chain_in_halves *c = &job.chain;
     const int width = s->width, stride = width + 1, last = c->middle - 1;
     fu_share(s->threads, c->n, work_part, &job);
@@ -93,7 +75,7 @@ int fu_twisted_factor(fu_system *s, const fu_lapack *lapack, int chain)
         for (int i = j; i <= last && i <= j + width; ++i)
             first[(long)j * stride + i - j] += second[(long)(last - i) * stride + i - j] - below[i - j];
     }
-    return fu_band_factor(lapack, c->middle, width, first);
+    return fu_band_factor(c->middle, width, first);
 }
 
 /* Computes x = L^-1 x in half a chain, of the second one in the mirror, with its change of the middle. */
@@ -132,7 +114,7 @@ static void backward(const job *job, int half)
 /* Computes x = K^-1 x in a chain, with x zero outside of these rows. */
 void fu_twisted_solve(const fu_system *s, int chain, fu_span rows, double *x)
 {
-    job job = {s, 0, in_halves(s, chain), rows, x, forward};
+    job job = {s, in_halves(s, chain), rows, x, forward};
     const chain_in_halves *c = &job.chain;
     double *middle = x + c->start + c->count;
     fu_share(s->threads, c->n, work_part, &job);
