@@ -6,6 +6,7 @@
  * A polynomial extrapolates unknowns alone: dofs tied to them follow, prescribed ones have `rest` times the last.
  * Newton's method does not correct other parts of a prediction, and rounding in them, extrapolated by polynomials,
  * would grow without bounds. */
+#include "base/simd.h"
 #include "base/workspace.h"
 #include "bodies/unknowns.h"
 #include "equations/run.h"
@@ -95,17 +96,54 @@ void fu_extrapolate(const fu_extrapolation *past, fu_run *run, double rest, doub
         run->next.s[i] += bend * (past->slope[i] - past->slope_before[i]);
 }
 
-/* Returns the sum of squares of the errors of a prediction of the unknowns' `next`. */
-static double miss(const fu_extrapolation *past, const fu_run *run, factors f)
+/* Factors of all predictions, by degree from BY_VELOCITIES on: they are evaluated side by side. */
+enum { PREDICTIONS = MAX_DEGREE - BY_VELOCITIES + 1 };
+_Static_assert(PREDICTIONS == FU_SIMD_WIDTH, "one block has all predictions");
+typedef struct {
+    fu_simd_block now, before, earlier;
+} all_factors;
+
+FU_INLINE void sum_misses(const fu_extrapolation *past, const fu_run *run, const all_factors *f, double *sums)
 {
-    const double *weight = run->model->weight;
-    double sum = 0.0;
-    for (int i = 0; i < run->model->n_dof; ++i) {
-        if (run->model->unknown_of_dof[i] < 0) continue;
-        const double d = weight[i] * (run->next.a[i] - predicted(past, f, run->now.a, i));
+    const double *weight = run->model->weight, *a = run->now.a, *next = run->next.a;
+    const int *unknown = run->model->unknown_of_dof, n = run->model->n_dof;
+    fu_simd_block sum = {0.0};
+    for (int i = 0; i < n; ++i) {
+        if (unknown[i] < 0) continue;
+        const fu_simd_block predicted = f->now * a[i] + f->before * past->before[i] + f->earlier * past->earlier[i];
+        const fu_simd_block d = weight[i] * (next[i] - predicted);
         sum += d * d;
     }
-    return sum;
+    *(fu_simd_block *)sums = sum;
+}
+
+/* Computes the sums of squares of the errors of all predictions of the unknowns' `next`. */
+static void misses(const fu_extrapolation *past, const fu_run *run, const all_factors *f, double *sums);
+FU_SIMD_FUNCTION(misses, sum_misses,
+                 (const fu_extrapolation *past, const fu_run *run, const all_factors *f, double *sums),
+                 (past, run, f, sums))
+
+/* Returns the degree of the prediction, of those with enough steps, that would have predicted the last step best. */
+static int best_degree(const fu_extrapolation *past, const fu_run *run, double rest, double h)
+{
+    const fu_last_steps *last = past->last;
+    all_factors all = {{0.0}, {0.0}, {0.0}};
+    double sums[PREDICTIONS], least = INFINITY;
+    int best = BY_VELOCITIES;
+    for (int degree = BY_VELOCITIES; degree <= MAX_DEGREE && degree <= last->steps; ++degree) {
+        const factors f = factors_of(last, degree, rest, h);
+        all.now[degree - BY_VELOCITIES] = f.now;
+        all.before[degree - BY_VELOCITIES] = f.before;
+        all.earlier[degree - BY_VELOCITIES] = f.earlier;
+    }
+    misses(past, run, &all, sums);
+    for (int degree = BY_VELOCITIES; degree <= MAX_DEGREE && degree <= last->steps; ++degree) {
+        const double sum = sums[degree - BY_VELOCITIES];
+        if (!(sum < least)) continue;
+        least = sum;
+        best = degree;
+    }
+    return best;
 }
 
 /* Records the last step from `now` to `next`, and chooses the prediction of the next one. */
@@ -115,14 +153,7 @@ void fu_extrapolation_accept(const fu_extrapolation *past, const fu_run *run, do
     const size_t coordinates = sizeof(double) * (size_t)run->model->n_coordinates;
     const size_t forces = sizeof(double) * (size_t)run->model->n_forces;
     fu_last_steps *last = past->last;
-    int best = BY_VELOCITIES;
-    double least = INFINITY;
-    for (int degree = BY_VELOCITIES; degree <= MAX_DEGREE && degree <= last->steps; ++degree) {
-        const double sum = miss(past, run, factors_of(last, degree, rest, h));
-        if (!(sum < least)) continue;
-        least = sum;
-        best = degree;
-    }
+    const int best = best_degree(past, run, rest, h);
     memcpy(past->earlier, past->before, dofs);
     memcpy(past->before, run->now.a, dofs);
     memcpy(past->force_earlier, past->force_before, forces);

@@ -15,6 +15,7 @@
  * ratio of both, and vibrations would grow from event to event, the more so the stiffer a cable is. After such a
  * step its initial a_n continues, without a restart of the scheme by a_n = q''_n, which contains the full
  * acceleration of vibrations. */
+#include "base/simd.h"
 #include "base/workspace.h"
 #include "bodies/rotation.h"
 #include "couplings/common/couplings.h"
@@ -87,29 +88,36 @@ typedef struct {
     double h;
 } share;
 
-/* Computes psi, v and q'' of a part of the dofs, and q before it is moved. */
-static void kinematics_part(const void *what, int part, int parts)
+FU_INLINE void take_steps(const fu_run *run, double h, int first, int end)
 {
-    const share *job = what;
-    fu_run *run = job->run;
-    const double h = job->h;
-    const fu_range range = fu_part_of(run->model->n_dof, FU_DOFS_APART, part, parts);
-    const int end = part + 1 < parts ? range.end : run->model->n_q; /* coordinates of cables are dofs, and come first */
     const parameters *g = scheme_of(run);
-    const fu_state *now = &run->now;
-    fu_state *next = &run->next;
+    const fu_state *now = &run->now, *next = &run->next;
     const double over = 1.0 / (1.0 - g->alpha_f), slope = over * (1.0 - g->alpha_m);
     const double slope_now = over * g->alpha_m, share_before = over * g->alpha_f;
     const double by_now = h * h * (0.5 - g->beta), by_next = h * h * g->beta;
     const double rate_now = h * (1.0 - g->gamma), rate_next = h * g->gamma;
     const double *v = now->v, *a = now->a, *before = now->acceleration, *change = next->a;
     double *restrict psi = run->psi, *restrict velocity = next->v, *restrict acceleration = next->acceleration;
-    for (int i = range.first; i < range.end; ++i) {
+    for (int i = first; i < end; ++i) {
         psi[i] = h * v[i] + by_now * a[i] + by_next * change[i];
         velocity[i] = v[i] + rate_now * a[i] + rate_next * change[i];
         acceleration[i] = slope * change[i] + slope_now * a[i] - share_before * before[i];
     }
-    memcpy(next->q + range.first, now->q + range.first, sizeof(double) * (size_t)(end - range.first));
+}
+
+/* Computes psi, v and q'' of the dofs [first, end). */
+static void step_dofs(const fu_run *run, double h, int first, int end);
+FU_SIMD_FUNCTION(step_dofs, take_steps, (const fu_run *run, double h, int first, int end), (run, h, first, end))
+
+/* Computes psi, v and q'' of a part of the dofs, and q before it is moved. */
+static void kinematics_part(const void *what, int part, int parts)
+{
+    const share *job = what;
+    const fu_run *run = job->run;
+    const fu_range range = fu_part_of(run->model->n_dof, FU_DOFS_APART, part, parts);
+    const int end = part + 1 < parts ? range.end : run->model->n_q; /* coordinates of cables are dofs, and come first */
+    step_dofs(run, job->h, range.first, range.end);
+    memcpy(run->next.q + range.first, run->now.q + range.first, sizeof(double) * (size_t)(end - range.first));
 }
 
 /* Computes q, v and q'' of `next` from its a. */
