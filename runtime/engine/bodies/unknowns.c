@@ -227,24 +227,43 @@ void fu_add_body(const fu_model *model, fu_system *s, int dof, int n, const doub
     add_together(s, first, n, first, n, 1.0, values, n, 1);
 }
 
-/* Adds a row of the border and its transpose as a column: a factor times n values over the dofs `at`. row: numbered by
+/* Adds to a line of the border, its row or its column, a factor times n values over the dofs `at`. line: numbered by
  * fu_extra. Without a system (null) does nothing. */
+void fu_add_line(const fu_model *model, fu_system *system, int line, int is_row, int n, const int *at,
+                 const double *value, double factor)
+{
+    fu_system *s = system;
+    if (!s) return;
+    const int beyond = model->n_band + model->n_border_dof - model->n_dof, extra = beyond + line;
+    double *entries = is_row ? s->C : s->B;
+    fu_span *spans = is_row ? s->span_C : s->span_B;
+    for (int i = 0, chain = -1, strip = -1; i < n; ++i) {
+        const int unknown = at[i] < model->n_dof ? model->unknown_of_dof[at[i]] : beyond + at[i];
+        const double added = factor * value[i];
+        if (unknown == FU_FIXED) continue;
+        if (unknown < 0) fu_add(model, s, is_row ? line : at[i], is_row ? at[i] : line, added);
+        if (unknown >= s->n) add(s, is_row ? extra : unknown, is_row ? unknown : extra, added);
+        if (unknown < 0 || unknown >= s->n) continue;
+        const int half = s->half[unknown];
+        if (half / FU_HALVES != chain) {
+            chain = half / FU_HALVES;
+            strip = fu_strip_of(s, extra - s->n, chain);
+        }
+        if (strip < 0) {
+            s->D[s->fronts->size] += fabs(added);
+            continue;
+        }
+        entries[s->strips[strip].at + unknown] += added;
+        extend_span(spans + FU_HALVES * strip + half % FU_HALVES, unknown);
+    }
+}
+
+/* Adds a row of the border and its transpose as a column, likewise. */
 void fu_add_row_and_column(const fu_model *model, fu_system *system, int row, int n, const int *at, const double *value,
                            double factor)
 {
-    const int extra = model->n_band + model->n_border_dof - model->n_dof + row;
-    if (!system) return;
-    for (int i = 0; i < n; ++i) {
-        const int unknown = model->unknown_of_dof[at[i]];
-        const double added = factor * value[i];
-        if (unknown >= 0) {
-            add(system, extra, unknown, added);
-            add(system, unknown, extra, added);
-        } else if (unknown != FU_FIXED) {
-            fu_add(model, system, row, at[i], added);
-            fu_add(model, system, at[i], row, added);
-        }
-    }
+    fu_add_line(model, system, row, 1, n, at, value, factor);
+    fu_add_line(model, system, row, 0, n, at, value, factor);
 }
 
 /* The size of dofs: the largest of n weighted dofs, of each part of threads. */

@@ -23,6 +23,8 @@ void fu_add_element_matrix(const fu_model *model, int first, int n, const double
 void fu_add_block(const fu_model *model, fu_system *system, fu_side rows, fu_side columns, double factor,
                   const double *values, int by_row, int by_column);
 void fu_add_body(const fu_model *model, fu_system *system, int dof, int n, const double *values);
+void fu_add_line(const fu_model *model, fu_system *system, int line, int is_row, int n, const int *at,
+                 const double *value, double factor);
 void fu_add_row_and_column(const fu_model *model, fu_system *system, int row, int n, const int *at, const double *value,
                            double factor);
 int fu_extra(const fu_model *model, int k);

@@ -86,21 +86,20 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     const int row = at[s], force = row + 1;
     fu_slide_tangent(model, next, j, next->forces + coupling->force, J, K);
     if (slide->resistance && slides) resistance_matrix(model, j, equations, J, system);
-    for (int i = 0; i < n; ++i)
-        for (int d = 0; d < dim; ++d)
-            if (i < s || slides) fu_add(model, system, at[i], force + d, mass * J[d * n + i]);
+    for (int d = 0; d < dim; ++d) fu_add_line(model, system, force + d, 0, s + slides, at, J + d * n, mass);
     fu_turn_attachment(model, &slide->rider, equations->psi, J, dim, n, element);
     fu_turn_attachment(model, &slide->rider, equations->psi, K, n, n, element);
     if (!slides) fu_add(model, system, row, row, mass);
-    for (int i = 0; i < n; ++i) {
-        for (int d = 0; d < dim; ++d) {
-            if (flags->mode != FU_LEFT) fu_add(model, system, force + d, at[i], mass * J[d * n + i]);
-            else if (i == 0) fu_add(model, system, force + d, force + d, mass);
-        }
-        if (i == s && !slides) continue;
-        for (int k = 0; k < n; ++k)
+    for (int d = 0; d < dim; ++d) {
+        if (flags->mode != FU_LEFT) fu_add_line(model, system, force + d, 1, n, at, J + d * n, mass);
+        else fu_add(model, system, force + d, force + d, mass);
+    }
+    for (int i = 0; i < s; ++i) {
+        fu_add(model, system, at[i], row, w.stiffness * K[i * n + s]);
+        for (int k = 0; k < s; ++k)
             if (K[i * n + k] != 0.0) fu_add(model, system, at[i], at[k], w.stiffness * K[i * n + k]);
     }
+    if (slides) fu_add_line(model, system, row, 1, n, at, K + s * n, w.stiffness);
 }
 
 static void rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work)
