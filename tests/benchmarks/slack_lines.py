@@ -47,10 +47,11 @@ PARTS = ("upper", "buoyant", "lower")
 
 
 def lazy_wave(data: LazyWave, elements: tuple[int, ...], fractions: tuple[float, float] | None = None,
-              added_mass: float | None = 1.0, membrane: str = "full") -> fu.Scene:
+              added_mass: float | None = 1.0, membrane: str = "full", heave: fu.TableSignal | None = None) -> fu.Scene:
     """Return the cable, drawn straight from the hang-off to the anchor.
 
-    fractions: of the distance at which its parts are drawn to meet; by default those of their lengths.
+    fractions: of the distance at which its parts are drawn to meet; by default those of their lengths. heave: vertical
+    displacement of the hang-off in m.
     """
     scene = fu.Scene(gravity=(0, 0, -G))
     start, end = np.array([5.0, 0, -14]), np.array([data.anchor[0], 0, data.anchor[1]])
@@ -69,7 +70,10 @@ def lazy_wave(data: LazyWave, elements: tuple[int, ...], fractions: tuple[float,
                    added_mass=added_mass)
         if name != "buoyant":
             scene.contact(name, "bed", stiffness=1e5 * diameter, radius=1e-6, damping=1.0)
-    scene.pin("upper", s=0)
+    if heave is None:
+        scene.pin("upper", s=0)
+    else:
+        scene.motion("upper", s=0, displacement=(0, 0, heave))
     scene.pin("lower", s=data.lengths[2])
     scene.tie("upper", s=data.lengths[0], to="buoyant", at=0)
     scene.tie("buoyant", s=data.lengths[1], to="lower", at=0)
