@@ -123,6 +123,7 @@ class StaticProblem(StaticState):
         self.coordinates = coordinates_of(self.model)
         self.point_entries = _point_entries(self.model)
         self.slack: dict[str, float] = {}  # slack fractions of cables as strings
+        self.string_nodes: Any = None  # nodes of cables as those of strings, when first needed
         self.last_strings: dict[bytes, Any] = {}  # of groups of cables: the last forces on strings, and their rest
         self.held = False  # whether short steps have held cables on surfaces
         self.pushed = False  # whether a push off an unstable branch had no preferred direction

@@ -6,8 +6,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from ...model.contacts import ContactModel
 from ...model.crossings import CrossingModel
@@ -65,17 +63,19 @@ class StringNodes:
     def string_node(self) -> np.ndarray:
         """Return (nodes,): the first node that ties make the same as each node."""
         stands_for = np.arange(len(self.unknown))
-        free = np.flatnonzero((self.unknown >= 0).any(axis=1))
-        _, first, same = np.unique(self.unknown[free], axis=0, return_index=True, return_inverse=True)
-        stands_for[free] = free[first[same.ravel()]]
+        first: dict[tuple[int, ...], int] = {}
+        for node in np.flatnonzero((self.unknown >= 0).any(axis=1)).tolist():
+            stands_for[node] = first.setdefault(tuple(self.unknown[node].tolist()), node)
         return stands_for
 
+    @cached_property
     def groups(self) -> list[np.ndarray]:
         """Return the numbers of the cables of each group that ties connect."""
-        n, tied = len(self.model.cables), np.flatnonzero(self.string_node != np.arange(len(self.string_node)))
-        pairs = self.cable[tied], self.cable[self.string_node[tied]]
-        labels = connected_components(coo_array((np.ones(len(tied)), pairs), shape=(n, n)), directed=False)[1]
-        return [np.flatnonzero(labels == label) for label in np.unique(labels)]
+        group = np.arange(len(self.model.cables))
+        for node in np.flatnonzero(self.string_node != np.arange(len(self.string_node))).tolist():
+            one, other = group[self.cable[node]], group[self.cable[self.string_node[node]]]
+            group[group == max(one, other)] = min(one, other)
+        return [np.flatnonzero(group == label) for label in np.unique(group).tolist()]
 
     def of(self, group: np.ndarray) -> np.ndarray:
         """Return the nodes of a group of cables."""

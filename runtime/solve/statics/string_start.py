@@ -46,11 +46,12 @@ def hang(problem: StaticProblem, every: bool) -> bool:
     model = problem.model
     if not model.cables:
         return False
-    nodes, kept = StringNodes(model), problem.keep()
+    kept = problem.keep()
     q = kept["q"]
     if not (every or np.array_equal(q, problem.begin)):
         return False
-    groups = [group for group in nodes.groups() if nodes.can_hang(group) and (every or (
+    nodes = problem.string_nodes = problem.string_nodes or StringNodes(model)
+    groups = [group for group in nodes.groups if nodes.can_hang(group) and (every or (
         nodes.acted_on.isdisjoint(group.tolist()) and _is_straight_and_slack(nodes, group, problem.as_drawn)))]
     found = False
     uneven = any(rests(contact) and contact.shape == "terrain" for contact in model.contacts)

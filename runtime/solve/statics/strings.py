@@ -69,9 +69,8 @@ class Strings:
         return replace(self, r=self.r[order], fixed=self.fixed[order], load=self.load[order], links=number[self.links],
                        bends=number[self.bends], resting=number[self.resting])
 
-    def stretched_evenly(self) -> np.ndarray:
+    def stretched_evenly(self, system: _Banded) -> np.ndarray:
         """Return (n, dim): positions of nodes with links as springs of one stiffness per length, without loads."""
-        system = _Banded(self)
         stiffness = np.broadcast_to((1 / self.length)[:, None, None], (len(self.links), 1, 1)) * np.eye(self.r.shape[1])
         start = np.where(self.fixed, self.r, 0.0)
         pull = (start[self.links[:, 1]] - start[self.links[:, 0]]) / self.length[:, None]
@@ -210,7 +209,7 @@ class _Search:
         self._isotropic = np.eye(strings.r.shape[1]) / (strings.length**2)[:, None, None]
         self.gives = 1 / (strings.length * strings.axial)
         self.yields = strings.compliances / self.unit**2
-        self.r = strings.stretched_evenly()
+        self.r = strings.stretched_evenly(self.system)
         self.tension = np.full(len(strings.links), self.scale * strings.length)
         self.pressure = np.full(len(strings.resting), 0.1 * self.scale * self.unit)
         self._look()
