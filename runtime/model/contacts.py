@@ -185,7 +185,8 @@ def _contact(part: Contact, builder: ModelBuilder) -> ContactModel:
     model = ContactModel(**arguments | {"entries": entries}, type="contact", friction=part.friction_coefficient,
                          tangential=_tangential(part, arguments["stiffness"]))
     if part.a in builder.cable_index:
-        drawn = _along_cable(model, builder.cable_index[part.a], builder)
+        _along_cable(model, builder.cable_index[part.a], builder)
+        drawn = _drawn(model, builder) if part.friction_coefficient else NONE
     else:
         assert part.points is not None, f"{part.where} is not complete"
         points = part.points
@@ -226,8 +227,8 @@ def _on_body(name: str, points: tuple[Vector, ...],
     return on, np.array([farthest]), np.array([body.point(point) for point in points])
 
 
-def _along_cable(model: ContactModel, index: int, builder: ModelBuilder) -> np.ndarray:
-    """Add the quadrature on a cable; return (n, 3): where its points are drawn."""
+def _along_cable(model: ContactModel, index: int, builder: ModelBuilder) -> None:
+    """Add the quadrature on a cable."""
     cable = builder.cables[index]
     hull = builder.hull(index)
     model.cable, model.n_points, model.hull, model.spread = index, len(GAUSS[0]), hull.points, hull.spread
@@ -235,6 +236,11 @@ def _along_cable(model: ContactModel, index: int, builder: ModelBuilder) -> np.n
     model.N, _, model.weights = along_elements(cable.kernel("on_axis"), cable.mesh.lengths, GAUSS)
     model.stride = 0 if cable.mesh.is_even else model.n_points
     model.arc = _arc_lengths(cable.mesh, GAUSS[0])
+
+
+def _drawn(model: ContactModel, builder: ModelBuilder) -> np.ndarray:
+    """Return (n, 3): where the points on a cable are drawn."""
+    cable = builder.cables[model.cable]
     vectors = builder.scene.cables[cable.name].nodal_vectors
     both = np.concatenate([vectors[:-1], vectors[1:]], axis=1)
     N = np.broadcast_to(model.N, (cable.n_elements, *model.N.shape[1:]))

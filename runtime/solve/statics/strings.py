@@ -179,20 +179,19 @@ class _Banded:
 
 @dataclass
 class _Step:
-    """Changes of positions, tensions and pressures, and of the constraints: linear, and a square that is subtracted."""
+    """Changes of positions, multipliers and constraints: linear, and of links a square that is subtracted."""
 
     x: np.ndarray
     more: np.ndarray
-    harder: np.ndarray
-    closing: np.ndarray
-    rise: np.ndarray
+    rate: np.ndarray
     square: np.ndarray
 
 
 class _Search:
-    """The state of the iteration: positions, and the value and multiplier of each constraint.
+    """The state of the iteration: positions, and the value and multiplier of each constraint, of links before planes.
 
     Constraints are dimensionless, with heights over the mean length of links; multipliers have the unit of energy.
+    gives: change of constraints by their multipliers.
     """
 
     def __init__(self, strings: Strings):
@@ -206,90 +205,105 @@ class _Search:
         self._of_all = _Scatter(np.concatenate([multiplied, strings.bends.ravel()]), strings.r.shape)
         self._natural = strings.natural[:, None]
         self._bending = (strings.bending[:, None] * strings.factors)[:, :, None]
-        self._isotropic = np.eye(strings.r.shape[1]) / (strings.length**2)[:, None, None]
-        self.gives = 1 / (strings.length * strings.axial)
-        self.yields = strings.compliances / self.unit**2
+        self._square = strings.length**2
+        self._isotropic = np.eye(strings.r.shape[1]) / self._square[:, None, None]
+        self.n = n = len(strings.links)
+        self.gives = np.concatenate([1 / (strings.length * strings.axial), strings.compliances / self.unit**2])
         self.r = strings.stretched_evenly(self.system)
-        self.tension = np.full(len(strings.links), self.scale * strings.length)
-        self.pressure = np.full(len(strings.resting), 0.1 * self.scale * self.unit)
+        self.multiplier = np.concatenate([self.scale * strings.length,
+                                          np.full(len(strings.resting), 0.1 * self.scale * self.unit)])
         self._look()
-        short = self.slack <= 0  # the first tension of short links stretches them
-        self.tension[short] += 1.5 * (1e-12 - self.slack[short]) / self.gives[short]
-        below = self.height <= 0
-        self.pressure[below] += 1.5 * (1e-3 - self.height[below]) / np.maximum(self.yields[below], DIVISION_GUARD)
+        least = np.where(np.arange(len(self.value)) < n, 1e-12, 1e-3)  # first multipliers open closed constraints
+        closed = self.value <= 0
+        self.multiplier[closed] += 1.5 * (least - self.value)[closed] / np.maximum(self.gives[closed], DIVISION_GUARD)
         self._look()
 
     def _look(self) -> None:
         strings = self.strings
         self.d = self.r[self._second] - self.r[self._first]
-        self.along = self.d / (strings.length**2)[:, None]
-        self.slack = (1 - (self.d * self.along).sum(axis=1)) / 2 + self.gives * self.tension
-        above = (self.r[strings.resting] * strings.normals).sum(axis=1) - strings.heights
-        self.height = above / self.unit + self.yields * self.pressure
+        self.along = self.d / self._square[:, None]
+        self.value = np.concatenate([(1 - np.add.reduce(self.d * self.along, axis=1)) / 2,
+                                     (self._along_normals(self.r) - strings.heights) / self.unit])
+        self.value += self.gives * self.multiplier
         self.left = self._out_of_balance()
+
+    def _along_normals(self, x: np.ndarray) -> np.ndarray:
+        """Return the components of vectors at the resting nodes along the normals of their planes."""
+        return np.asarray(np.add.reduce(x[self.strings.resting] * self.strings.normals, axis=1))
 
     def _out_of_balance(self) -> np.ndarray:
         """Return (n, dim): the residual forces in N; zero where a coordinate is fixed."""
         strings = self.strings
-        curvature = (strings.factors[:, :, None] * self.r[strings.bends]).sum(axis=1, keepdims=True) - self._natural
-        force = self._of_all.sums(*self._pulls(self.tension, -self.pressure), -self._bending * curvature)
+        curvature = np.add.reduce(strings.factors[:, :, None] * self.r[strings.bends], axis=1, keepdims=True)
+        force = self._of_all.sums(*self._pulls(self.multiplier), -self._bending * (curvature - self._natural))
         force += strings.load
         force[strings.fixed] = 0.0
         return force
 
-    def _pulls(self, tension: np.ndarray, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the forces of multipliers: links pull at both nodes, planes push with negative ones."""
-        pull = tension[:, None] * self.along
-        return pull, -pull, (pressure / -self.unit)[:, None] * self.strings.normals
+    def _pulls(self, multiplier: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the forces of multipliers: links pull at both nodes, planes push."""
+        pull = multiplier[: self.n, None] * self.along
+        return pull, -pull, (multiplier[self.n :] / self.unit)[:, None] * self.strings.normals
 
     def step(self) -> None:
         """Take a step of Mehrotra's method: the predicted step determines the distance from the constraints."""
-        strings, system = self.strings, self.system
-        of_links, of_planes = self.slack + self.gives * self.tension, self.height + self.yields * self.pressure
-        stiff, hard = self.tension / of_links, self.pressure / of_planes
-        blocks = (self.tension[:, None, None] * self._isotropic
-                  + stiff[:, None, None] * self.along[:, :, None] * self.along[:, None])
+        system, n = self.system, self.n
+        soft = self.value + self.gives * self.multiplier
+        stiff = self.multiplier / soft
+        blocks = (self.multiplier[:n, None, None] * self._isotropic
+                  + stiff[:n, None, None] * self.along[:, :, None] * self.along[:, None])
         matrix = self.constant + system.of_links(blocks)
-        if len(hard):
-            matrix += system.of_planes(hard / self.unit**2)
+        if len(stiff) > n:
+            matrix += system.of_planes(stiff[n:] / self.unit**2)
         factor = system.factor(matrix)
 
-        def towards(pull: np.ndarray, push: np.ndarray) -> _Step:
-            force = self.left + self._of_multipliers.sums(*self._pulls(pull / of_links, -push / of_planes))
-            x = system.solve(factor, force)
+        def towards(target: np.ndarray) -> _Step:
+            own = target / soft
+            x = system.solve(factor, self.left + self._of_multipliers.sums(*self._pulls(own)))
             apart = x[self._second] - x[self._first]
-            closing = -(self.along * apart).sum(axis=1)
-            rise = (x[strings.resting] * strings.normals).sum(axis=1) / self.unit
-            more, harder = pull / of_links - stiff * closing, push / of_planes - hard * rise
-            return _Step(x, more, harder, closing + self.gives * more, rise + self.yields * harder,
-                         (apart * apart).sum(axis=1) / (2 * strings.length**2))
+            rate = np.concatenate([-np.add.reduce(self.along * apart, axis=1), self._along_normals(x) / self.unit])
+            more = own - stiff * rate
+            rate += self.gives * more
+            return _Step(x, more, rate, np.add.reduce(apart * apart, axis=1) / (2 * self._square))
 
-        there = self.tension * self.slack, self.pressure * self.height
-        first, mean = towards(-there[0], -there[1]), self.mean()
+        there = self.multiplier * self.value
+        first, mean = towards(-there), self.mean()
         size = self._length(first)
-        left_then = ((self.tension + size * first.more) @ (self.slack + size * first.closing - size**2 * first.square)
-                     + (self.pressure + size * first.harder) @ (self.height + size * first.rise))
-        aim = mean * min(1.0, max(left_then / (mean * (len(there[0]) + len(there[1]))), 0.0)) ** 3
-        step = towards(aim - there[0] - first.more * first.closing + self.tension * first.square,
-                       aim - there[1] - first.harder * first.rise)
+        left_then = self.value + size * first.rate
+        left_then[:n] -= size**2 * first.square
+        rest = self._sum(self.multiplier + size * first.more, left_then)
+        aim = mean * min(1.0, max(rest / (mean * len(there)), 0.0)) ** 3
+        target = aim - there - first.more * first.rate
+        target[:n] += self.multiplier[:n] * first.square
+        step = towards(target)
         size = self._length(step)
-        self.r, self.tension, self.pressure = (self.r + size * step.x, self.tension + size * step.more,
-                                               self.pressure + size * step.harder)
+        self.r, self.multiplier = self.r + size * step.x, self.multiplier + size * step.more
         self._look()
 
     def _length(self, step: _Step) -> float:
         """Return the fraction of a step that leaves constraints and multipliers positive; links have the square, too.
         """
-        far = MAX_BOUNDARY_FRACTION * self.slack
-        parts = [2 * far / np.maximum(np.sqrt(step.closing**2 + 4 * step.square * far) - step.closing, DIVISION_GUARD)]
-        parts += [MAX_BOUNDARY_FRACTION * value / np.maximum(-rate, DIVISION_GUARD)
-                  for value, rate in ((self.tension, step.more), (self.height, step.rise),
-                                      (self.pressure, step.harder))]
-        return min(1.0, *(float(part.min(initial=1.0)) for part in parts))
+        n = self.n
+        far, closing = MAX_BOUNDARY_FRACTION * self.value, step.rate[:n]
+        roots = np.maximum(np.sqrt(closing**2 + 4 * step.square * far[:n]) - closing, DIVISION_GUARD)
+        parts = [2 * far[:n] / roots,
+                 MAX_BOUNDARY_FRACTION * self.multiplier / np.maximum(-step.more, DIVISION_GUARD)]
+        if len(far) > n:
+            parts.append(far[n:] / np.maximum(-step.rate[n:], DIVISION_GUARD))
+        return min(1.0, *(float(np.minimum.reduce(part, initial=1.0)) for part in parts))
+
+    def _sum(self, multiplier: np.ndarray, value: np.ndarray) -> float:
+        """Return the sum of constraints times multipliers, J."""
+        n = self.n
+        return float(multiplier[:n] @ value[:n] + multiplier[n:] @ value[n:])
 
     def mean(self) -> float:
         """Return the mean of constraints times multipliers, J."""
-        return float(self.tension @ self.slack + self.pressure @ self.height) / (len(self.tension) + len(self.pressure))
+        return self._sum(self.multiplier, self.value) / len(self.value)
+
+    def slack(self) -> np.ndarray:
+        """Return the values of the links' constraints."""
+        return self.value[: self.n]
 
     def shortest(self) -> float:
         """Return the smallest distance of a link's nodes over its length."""
@@ -297,7 +311,7 @@ class _Search:
 
     def is_at_rest(self) -> bool:
         """Return whether forces balance, and slack links have no tension."""
-        loose = (self.tension * self.slack / self.strings.length).max(initial=0.0)
+        loose = np.maximum.reduce(self.multiplier[: self.n] * self.slack() / self.strings.length, initial=0.0)
         return bool(max(np.abs(self.left).max(), loose) < FORCE_TOLERANCE * self.scale)
 
 
@@ -310,7 +324,7 @@ def rest_of(strings: Strings) -> Rest | None:
             search = _Search(strings)
             for iteration in range(MAX_ITERATIONS):
                 if search.is_at_rest():
-                    return Rest(search.r, search.slack < SLACK_TOLERANCE, search.shortest(), iteration)
+                    return Rest(search.r, search.slack() < SLACK_TOLERANCE, search.shortest(), iteration)
                 search.step()
                 if not np.isfinite(search.mean()):
                     return None
