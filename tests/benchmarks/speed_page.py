@@ -128,7 +128,7 @@ run.""",
                {"added mass": "added mass", "mean, N": "mean, N", "others' mean, N": "others", "min, N": "minimum, N",
                 "others' min, N": "others ", "max, N": "maximum, N", "others' max, N": "others  "},
                table="converged",
-               text="""Two programs that agree, without added mass; one program with it, as a force on accelerations.""")]),
+               text="Others: two programs that agree without added mass, and one with Morison's.")]),
     Section(
         "Many scenes",
         """Variants of a scene of 3 elements, with riders of 0.5 to 2 kg, one second each, `tol=1e-3`. Description,
