@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from funicular import Circle, GeneralSection, Material, Rectangle, Scene
+from funicular.results.section_forces.layer import beside, fixed_direction
 from numpy.testing import assert_allclose
 from shared_scenes import cable_scene
 
@@ -84,6 +85,22 @@ class TestTautBending:
             validated("Section forces", "rope under a point force", f"moment {name} the force", exact,
                       float(side["moment"].values[0, 2]), unit="N m", bound=0.05, variant="cable8p",
                       source="closed form, 2 √(N E I) sin(θ/4)", mesh=f"{elements} elements")
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("across", [0.0, 1e-15, -1e-15])
+@pytest.mark.parametrize("degrees", [30, 90, 120, -90])
+def test_a_clamp_bends_a_taut_cable_towards_its_force(side, across, degrees):
+    """M = 2 sqrt(N E I) sin(theta/2). At 90 degrees the mirror image of the force is opposite it, and rounding decides
+    on the axis of the rotation between these two.
+    """
+    angle, pull, EI, distance = np.deg2rad(degrees), 10.0, 1e-3, 0.004
+    force = pull * np.array([[np.cos(angle) + across, np.sin(angle), 0]])
+    kink = fixed_direction(np.zeros(1), np.array([[1.04, 0, 0]]), force, side)
+    s = np.array([[side * distance, -side * distance]])
+    found = beside(kink, s, s > 0, lambda about: np.full((1, 2), EI), np.repeat(force[:, None], 2, axis=1))
+    theta = 4 * np.arctan(np.tan(angle / 4) * np.exp(-distance / np.sqrt(EI / pull)))
+    assert_allclose(found, [[[0, 0, side * 2 * np.sqrt(pull * EI) * np.sin(theta / 2)], [0, 0, 0]]], rtol=1e-12)
 
 
 BEAMS = [("cable12", None), ("cable18", None), ("cable8p", None), ("beam24", "structural"), ("beam24", "continuum"),

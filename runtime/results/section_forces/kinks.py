@@ -15,7 +15,7 @@ from ...parts.validation import LENGTH_TOLERANCE
 from ..shape_functions import on_axis
 from .balance import Cuts, balanced, resultants
 from .cable_loads import CableLoads
-from .layer import Kink, fixed_direction
+from .layer import Kink, between, fixed_direction
 from .nodal_forces import ElementForces
 
 ForceAt = Callable[[np.ndarray, bool], np.ndarray]
@@ -46,8 +46,8 @@ def _of_points(cable: Cable, model: CableModel, forces: ElementForces, loads: Ca
         at = spatial(np.einsum("tk,tkd->td", on_axis(model, load.element, load.x)[0], e))
         jump, moment = resultants(load.f, e, is_r, at)
         sides = np.where(inside[:, k], 2.0, 1.0)[:, None]  # that share the moment
-        found.append(Kink(s[:, k], before[:, k], before[:, k] - np.where(inside[:, k, None], jump, 0.0),
-                          2 * moment / sides))
+        found.append(between(s[:, k], before[:, k], before[:, k] - np.where(inside[:, k, None], jump, 0.0),
+                             2 * moment / sides))
     return found
 
 
@@ -74,7 +74,7 @@ def _of_nodes(scene: SceneData, cable: Cable, model: CableModel, forces: Element
         if is_directed:
             found += [fixed_direction(s, direction, force, side) for side, force in n.items()]
         elif len(n) == 2:
-            found.append(Kink(s, n[-1], n[1], np.zeros((times, 3))))
+            found.append(between(s, n[-1], n[1], np.zeros((times, 3))))
     return found
 
 

@@ -19,24 +19,28 @@ MAX_DECAY_LENGTHS = 40.0
 
 
 class Kink(NamedTuple):
-    """A kink at s (T,): forces before and after it (T, 3), and a moment (T, 3) on the point, N m.
+    """A kink at s (T,): axis (T, 3) and angle theta0 (T,) of its sides, and a moment (T, 3) on the point, N m.
 
     side: the cuts that it bends, -1 before it, 1 after it, 0 both.
     """
 
     s: np.ndarray
-    before: np.ndarray
-    after: np.ndarray
+    axis: np.ndarray
+    theta: np.ndarray
     moment: np.ndarray
     side: int = 0
 
 
+def between(s: np.ndarray, before: np.ndarray, after: np.ndarray, moment: np.ndarray) -> Kink:
+    """Return the kink between two forces (T, 3), with a moment (T, 3) on the point."""
+    axis, angle = _turn(before, after)
+    return Kink(s, axis, angle / 2, moment)
+
+
 def fixed_direction(s: np.ndarray, direction: np.ndarray, force: np.ndarray, side: int) -> Kink:
     """Return a section of fixed direction (T, 3) with this force on one side, as half of a kink."""
-    along = np.sum(direction * force, axis=-1) / np.sum(direction**2, axis=-1)
-    mirrored = 2 * along[:, None] * direction - force
-    before, after = (mirrored, force) if side > 0 else (force, mirrored)
-    return Kink(s, before, after, np.zeros_like(force), side)
+    axis, theta = _turn(direction, force) if side > 0 else _turn(force, direction)
+    return Kink(s, axis, theta, np.zeros_like(force), side)
 
 
 Stiffness = Callable[[np.ndarray], np.ndarray]
@@ -56,8 +60,7 @@ def beside(kink: Kink, s: np.ndarray, after: np.ndarray, stiffness: Stiffness, f
     after (T or 1, n): whether a cut at the kink is on the side of larger s.
     """
     place = kink.s[:, None]
-    normal, theta = _turn(kink.before, kink.after)
-    EI = stiffness(np.where(np.any(normal, axis=-1)[:, None], normal, kink.moment)[:, None])
+    EI = stiffness(np.where(np.any(kink.axis, axis=-1)[:, None], kink.axis, kink.moment)[:, None])
     found = np.zeros_like(force)
     size = np.linalg.norm(force, axis=-1)
     bent = np.sqrt(EI / np.where(size > 0, size, np.inf))
@@ -70,16 +73,15 @@ def beside(kink: Kink, s: np.ndarray, after: np.ndarray, stiffness: Stiffness, f
     size, bent, distance = size[near], bent[near], distance[near]
     beyond = np.broadcast_to(beyond, near.shape)[near]
     decay = np.exp(-distance / bent)
-    theta = 4 * np.arctan(np.tan(theta[row] / 4) * decay)
+    theta = 4 * np.arctan(np.tan(kink.theta[row] / 4) * decay)
     bending = 2 * size * bent * np.sin(theta / 2)
     couple = kink.moment[row] * (np.where(beyond, -0.5, 0.5) * decay)[:, None]
-    found[near] = bending[:, None] * normal[row] + couple
+    found[near] = bending[:, None] * kink.axis[row] + couple
     return found
 
 
 def _turn(before: np.ndarray, after: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the axis (T, 3) and half of the angle of the rotation between directions (T, 3)."""
+    """Return the axis (T, 3) and the angle (T,), up to pi, of the rotation between directions (T, 3)."""
     cross = np.cross(before, after)
     sine = np.linalg.norm(cross, axis=-1)
-    angle = np.arctan2(sine, np.sum(before * after, axis=-1))
-    return cross / np.where(sine > 0, sine, 1.0)[:, None], angle / 2
+    return cross / np.where(sine > 0, sine, 1.0)[:, None], np.arctan2(sine, np.sum(before * after, axis=-1))
