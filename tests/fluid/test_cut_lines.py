@@ -8,6 +8,7 @@ import pytest
 from expectations import unaccounted
 from funicular.engine import Engine
 from funicular.model.build import build
+from funicular.results.section_forces.spreads import Rule
 
 G, WATER = 9.81, 1025.0
 
@@ -34,6 +35,18 @@ def test_sections_at_the_free_end_of_a_rope_that_falls_in_bear_nothing():
     cut = run.section_forces("rope", [1.5, run.scene.cables["rope"].length])
     for values in (np.array(cut["force"]), np.array(cut["moment"])):
         assert np.abs(values[:, 1]).max() < 1e-9 * np.abs(values).max()
+
+
+@pytest.mark.parametrize("ulps", [-3, -1, 0, 1, 3])
+def test_a_wet_part_ends_with_its_element_whatever_the_rounding(ulps):
+    """One that ended beyond it by rounding was cut at its end, by a polynomial: 2e-5 N at a free end."""
+    cable = build(thrown()).cables[0]
+    length = cable.mesh.length(0)
+    places, weights = np.polynomial.legendre.leggauss(8)
+    for start, stop in ((0.6 * length, length), (0.0, 0.6 * length)):
+        x = (start + stop + (stop - start) * places) / 2 + ulps * np.spacing(length)
+        rule = Rule.between_cuts(cable, 0, x, weights * (stop - start) / 2)
+        assert rule.stop == length if stop == length else rule.start == 0.0
 
 
 def test_sections_on_both_sides_of_a_node_bear_the_same():

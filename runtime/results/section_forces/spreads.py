@@ -57,10 +57,15 @@ class Rule(Quadrature):
 
     @classmethod
     def between_cuts(cls, cable: CableModel, element: int, x: np.ndarray, weights: np.ndarray) -> Rule:
-        """Return the rule of a part between two cuts; its weights are symmetric and add up to its length."""
-        length = weights.sum()
-        middle = weights @ x / length
-        return cls(element, middle - length / 2, middle + length / 2, x, weights, *on_axis(cable, element, x))
+        """Return the rule of a part between two cuts; its weights are symmetric and add up to its length.
+
+        A part that reaches an end of the element but for rounding ends there: a section at the end has all of it.
+        """
+        length, whole = weights.sum(), cable.mesh.length(element)
+        middle, near = weights @ x / length, LENGTH_TOLERANCE * whole
+        start, stop = middle - length / 2, middle + length / 2
+        start, stop = 0.0 if abs(start) < near else start, whole if abs(stop - whole) < near else stop
+        return cls(element, start, stop, x, weights, *on_axis(cable, element, x))
 
     def spread(self, dim: int, density: np.ndarray, on_slope: np.ndarray | None = None,
                turning: Turning | None = None) -> Spread:
