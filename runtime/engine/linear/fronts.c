@@ -153,7 +153,7 @@ FU_INLINE void substituted(const double *F, int stride, int n, int done, double 
  * Sizes known to the compiler take half the instructions. */
 enum { LINK_PIVOTS = FU_FRAME_DOFS + 3, LINK = LINK_PIVOTS + 3 };
 _Static_assert(LINK_PIVOTS == 4 + 4 + 1, "as forward and backward do them");
-_Static_assert(LINK <= FU_UNPACKED_FRONT, "backward takes the columns of others where they are");
+_Static_assert((int)LINK <= (int)FU_UNPACKED_FRONT, "backward takes the columns of others where they are");
 
 FU_INLINE void forward(const double *F, int n, int done, double *restrict x)
 {

@@ -7,8 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Returns the sums of the values at four nodal vectors times the rows of their shape functions at four points. */
-FU_INLINE fu_points sums_at(const double *values, const double *const rows[FU_BLOCK_POINTS])
+/* Computes the sums of the values at four nodal vectors times the rows of their shape functions at four points. */
+FU_INLINE void sums_at(const double *values, const double *const rows[FU_BLOCK_POINTS], double *out)
 {
     const fu_points a = *(const fu_simd_block *)rows[0], b = *(const fu_simd_block *)rows[1],
                     c = *(const fu_simd_block *)rows[2], d = *(const fu_simd_block *)rows[3];
@@ -17,7 +17,7 @@ FU_INLINE fu_points sums_at(const double *values, const double *const rows[FU_BL
     fu_points sum = FU_SHUFFLE(ab, cd, 0, 1, 4, 5) * values[0];
     sum += FU_SHUFFLE(next_ab, next_cd, 0, 1, 4, 5) * values[1];
     sum += FU_SHUFFLE(ab, cd, 2, 3, 6, 7) * values[2];
-    return sum + FU_SHUFFLE(next_ab, next_cd, 2, 3, 6, 7) * values[3];
+    *(fu_simd_block *)out = sum + FU_SHUFFLE(next_ab, next_cd, 2, 3, 6, 7) * values[3];
 }
 
 /* Computes the sums of values at the nodal vectors at each point; those of four vectors in blocks of points, whose
@@ -28,7 +28,7 @@ FU_INLINE void sums_over(int n, int n_points, const double *N, const double *val
     for (int from = 0; from < n_points && n == 4; from += FU_BLOCK_POINTS) {
         const double *rows[FU_BLOCK_POINTS];
         for (int p = 0; p < FU_BLOCK_POINTS; ++p) rows[p] = N + 4 * (from + p < n_points ? from + p : n_points - 1);
-        *(fu_simd_block *)(out + from) = sums_at(values, rows);
+        sums_at(values, rows, out + from);
     }
 }
 

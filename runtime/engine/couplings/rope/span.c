@@ -181,8 +181,11 @@ static const fu_field fields[] = {
     {0},
 };
 
-static const fu_inertia_operations inertia = {inertial_force, mass_matrix, kinetic_energy, potential_energy,
-                                              fu_span_energy_beyond_velocities};
+static const fu_inertia_operations inertia = {.force = inertial_force,
+                                              .matrix = mass_matrix,
+                                              .kinetic_energy = kinetic_energy,
+                                              .potential_energy = potential_energy,
+                                              .beyond_velocities = fu_span_energy_beyond_velocities};
 static const fu_history_operations history = {.size = fu_span_history_size,
                                               .over_step = fu_span_history_over_step,
                                               .jump = fu_span_history_jump,

@@ -291,8 +291,11 @@ static const fu_field fields[] = {
     {0},
 };
 
-static const fu_inertia_operations inertia = {inertial_force, mass_matrix, kinetic_energy, potential_energy,
-                                              fu_sheave_energy_beyond_velocities};
+static const fu_inertia_operations inertia = {.force = inertial_force,
+                                              .matrix = mass_matrix,
+                                              .kinetic_energy = kinetic_energy,
+                                              .potential_energy = potential_energy,
+                                              .beyond_velocities = fu_sheave_energy_beyond_velocities};
 static const fu_start_operations start = {
     .excess = excess, .may_be_open = fu_wheel_may_be_open, .is_possible = is_possible};
 static const fu_history_operations history = {.size = fu_sheave_history_size,
