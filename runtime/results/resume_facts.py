@@ -44,6 +44,7 @@ def programs_of(libraries: Iterable[str]) -> str:
 
 
 def start_of(model: Model) -> str:
-    """Return the digest of the initial state."""
-    places = [(slide.s, slide.element, slide.director.tolist()) for slide in model.slides]
-    return _digest(model.q.tobytes(), model.v.tobytes(), repr(places).encode())
+    """Return the digest of the initial state, in which zeros of both signs and numbers of all types are the same."""
+    places = [each for slide in model.slides for each in (slide.s, slide.element, *slide.director.ravel())]
+    arrays = (numpy.asarray(each, dtype=float) + 0.0 for each in (model.q, model.v, places))
+    return _digest(*(each.tobytes() for each in arrays))
