@@ -69,7 +69,7 @@ static double complex_band(int n, int width, int symmetric)
     return worst;
 }
 
-/* A symmetric positive definite band, also one wider than those of elements alone: what is left of its equations. */
+/* Returns the residual of a symmetric positive definite band, of any width up to more than that of elements. */
 static double real_band(int n, int width)
 {
     static double L[(WIDE + 1) * (MAX_SIZE + WIDE + 2 * FU_BAND_GROUP)];
