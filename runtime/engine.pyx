@@ -151,6 +151,7 @@ include "engine/cython/slopes.pxi"
 include "engine/cython/arrays.pxi"
 include "engine/cython/translation.pxi"
 include "engine/cython/statics.pxi"
+include "engine/cython/linear_model.pxi"
 include "engine/cython/report.pxi"
 
 
@@ -176,6 +177,8 @@ cdef class Engine(Report):
         run.integrator = fu_integrator_of(method.name.encode())
         if run.integrator == NULL:
             raise ValueError(f"the engine has no integrator {method.name}")
+        if method.is_linear and run.linear == NULL:
+            raise ValueError(f"integrator {method.name}: call take_linear_model first")
         parameters = method.parameters
         run.parameters = self._doubles(parameters)
         if run.integrator.n_parameters(run.parameters) != len(parameters):

@@ -17,7 +17,7 @@ from statistics import median
 import numpy as np
 
 from ..errors import FunicularError, FunicularWarning, SceneError, near
-from ..integrators import AUTO, INTEGRATORS
+from ..integrators import AUTO, INTEGRATORS, OF_EQUATIONS
 from ..parts.cable import Cable
 from ..parts.rope import Rope
 from ..parts.settings import RunSettings
@@ -111,11 +111,12 @@ class Grid:
 def grid(scene: Scene, *, integrators: Sequence[str] | None = None, elements: Sequence[str] | None = None,
          tols: Sequence[float] = TOLS, outputs: Sequence[str] | None = None, duration: float | None = None,
          output_step: float | None = None, repetitions: int = 5) -> Grid:
-    """Return a checked grid, by default with all integrators but "auto" and with `MESHES`. Raises SceneError."""
+    """Return a checked grid, by default with all integrators of the scene's equations, and `MESHES`. Raises SceneError.
+    """
     for name, values in (("integrators", integrators), ("elements", elements), ("tols", tols), ("outputs", outputs)):
         if values is not None and not len(values):
             raise SceneError("bench", f"{name}: the list is empty", "name one, or leave it out")
-    integrators = tuple(integrators or INTEGRATORS)
+    integrators = tuple(integrators or OF_EQUATIONS)
     for name in integrators:
         if name not in (AUTO, *INTEGRATORS):
             raise SceneError("bench", f'there is no integrator "{name}"', near(name, (AUTO, *INTEGRATORS)))

@@ -4,10 +4,13 @@ from .energy import EnergyMomentum
 from .explicit import Explicit
 from .genalpha import GeneralisedAlpha
 from .integrator import Demands, Integrator
+from .linear import Linear
 from .radau import Radau
 
-LIST = (GeneralisedAlpha, Explicit, Radau, EnergyMomentum)
+LIST = (GeneralisedAlpha, Explicit, Radau, EnergyMomentum, Linear)
 INTEGRATORS: dict[str, type[Integrator]] = {one.name: one for one in LIST}
+OF_EQUATIONS = tuple(one.name for one in LIST if not one.is_linear)
+"""Names of the integrators of the scene's own equations, for any motion."""
 AUTO = "auto"
 """Name for the integrator that a run chooses itself."""
 
@@ -17,5 +20,5 @@ def stable_at(fixed_step: bool) -> type[Integrator]:
     return GeneralisedAlpha if fixed_step else Radau
 
 
-__all__ = ["AUTO", "INTEGRATORS", "Demands", "EnergyMomentum", "Explicit", "GeneralisedAlpha", "Integrator", "Radau",
-           "stable_at"]
+__all__ = ["AUTO", "INTEGRATORS", "OF_EQUATIONS", "Demands", "EnergyMomentum", "Explicit", "GeneralisedAlpha",
+           "Integrator", "Linear", "Radau", "stable_at"]

@@ -59,6 +59,8 @@ class Integrator(ABC):
     takes_modal_bodies: ClassVar[bool] = True
     takes_friction_and_stops: ClassVar[bool] = True
     needs_discrete_gradient: ClassVar[bool] = False
+    is_linear: ClassVar[bool] = False
+    """Whether it takes the linear model of motion about the start."""
 
     @property
     @abstractmethod

@@ -55,10 +55,11 @@ class RunSettings(Part):
     output_step: s; by default a hundredth of the duration
     integrator: "explicit" (Runge-Kutta of order 8), "radau" (implicit, order 5, for stiff scenes), "genalpha"
         (implicit, order 2, with control of the dissipation), "energy" (order 2, keeps energy and momenta to rounding),
-        or "auto": the cheapest of the first three for this scene and tol, genalpha where step or spectral_radius is
-        given
-    spectral_radius: of genalpha (default 0.9) and energy (1) at infinite frequency: 1 keeps and 0 removes the fastest
-        vibrations, energy's of the cables, counted as dissipated
+        "linear" (order 2, for small motions about the start: cables and joints are linear there, see
+        `integrators.Linear`), or "auto": the cheapest of the first three for this scene and tol, genalpha where step or
+        spectral_radius is given
+    spectral_radius: of genalpha and linear (default 0.9) and energy (1) at infinite frequency: 1 keeps and 0 removes
+        the fastest vibrations, energy's of the cables, counted as dissipated
     model: "given", the elements as they are, or "auto": as `Scene.choose`, elements that are not given, and the
         integrator, are chosen for an error of model, mesh and time below tol
     initial: "drawn", "equilibrium" (static, under the loads at t = 0), "relaxed" (see `Scene.relax`), or a state that

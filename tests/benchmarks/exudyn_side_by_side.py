@@ -38,7 +38,7 @@ from statistics import median
 import exudyn_models as peer
 import numpy as np
 from funicular import FunicularError, FunicularWarning, Scene
-from funicular.integrators import AUTO, INTEGRATORS
+from funicular.integrators import AUTO, OF_EQUATIONS
 from funicular.results.trajectories import distance, largest_change
 from pendulum import pendulum
 from sliding import sliding_mass
@@ -145,7 +145,7 @@ def our_curves(case: Case, limit: float) -> dict[str, list[Point]]:
     well.
     """
     curves = {}
-    for integrator in (*INTEGRATORS, AUTO):
+    for integrator in (*OF_EQUATIONS, AUTO):
         curves[integrator] = curve(AUTO_TOLS if integrator == AUTO else TOLS, lambda tol, name=integrator: Point(
             f"{name} tol", tol, partial(integrate, case, limit, integrator=name, tol=tol)), limit)
     curves["genalpha step"] = curve((DURATION / n for n in STEPS), lambda step: Point(

@@ -189,7 +189,10 @@ COSTS = ((0.2, {"output_step": 2e-3}), (0.2, {"output_step": 1e-3}), (0.05, {"ou
          (0.01, {}), (TOL, {}), (2e-3, {}), (0.2, {"output_step": 2e-3, "spectral_radius": 0.8}),
          (0.2, {"output_step": 1e-3, "spectral_radius": 0.8}), (0.02, {"spectral_radius": 0.8}),
          (TOL, {"step": 1e-3}), (3.0, {"integrator": "radau"}), (1.0, {"integrator": "radau"}),
-         (0.2, {"integrator": "radau"}), (0.02, {"integrator": "radau"}))
+         (0.2, {"integrator": "radau"}), (0.02, {"integrator": "radau"}),
+         (0.2, {"integrator": "linear", "output_step": 2e-3}), (0.02, {"integrator": "linear"}),
+         (TOL, {"integrator": "linear"}), (TOL, {"integrator": "linear", "step": 2e-3}),
+         (TOL, {"integrator": "linear", "step": 1e-3}), (TOL, {"integrator": "linear", "step": 5e-4}))
 """absolute_tol and other settings."""
 
 

@@ -7,7 +7,7 @@ import funicular as fu
 import numpy as np
 import paired_scenes
 import pytest
-from funicular.integrators import INTEGRATORS
+from funicular.integrators import OF_EQUATIONS
 from funicular.results.trajectories import relative, trajectory
 from notes import WARNS
 from paired_scenes import TIME, random_row
@@ -83,7 +83,7 @@ def subject(request, tmp_path_factory):
     return Subject(seed, scene, duration, drawn, points(drawn, Route(scene)))
 
 
-@pytest.mark.parametrize("integrator", [name for name in INTEGRATORS if name != "radau"])
+@pytest.mark.parametrize("integrator", [name for name in OF_EQUATIONS if name != "radau"])
 def test_integrators_agree(subject, integrator):
     if (other := run(subject.scene, subject.duration, integrator)) is not None:
         check(subject, integrator, points(other, Route(subject.scene)), other)

@@ -17,7 +17,7 @@ from funicular import (
     TableSignal,
     load_run,
 )
-from funicular.integrators import INTEGRATORS
+from funicular.integrators import OF_EQUATIONS
 from funicular.results import streaming
 from funicular.results.netcdf import File
 from interrupted_runs import (
@@ -71,7 +71,7 @@ def test_dying_in_the_middle_of_a_write(uninterrupted, tmp_path, writes):
 
 
 @pytest.mark.filterwarnings("ignore:initial velocities broke a joint")
-@pytest.mark.parametrize("method", [*({"integrator": name} for name in INTEGRATORS),
+@pytest.mark.parametrize("method", [*({"integrator": name} for name in OF_EQUATIONS),
                                     {"integrator": "energy", "spectral_radius": 0.5}],
                          ids=lambda method: "-".join(map(str, method.values())))
 def test_every_integrator_goes_on_exactly(tmp_path, monkeypatch, method):

@@ -38,6 +38,7 @@ typedef struct fu_coupling fu_coupling;
 typedef struct fu_slide fu_slide;
 typedef struct fu_slackness fu_slackness;
 typedef struct fu_accelerator fu_accelerator;
+typedef struct fu_linear_model fu_linear_model;
 
 /* Newton matrix = inertia M + stiffness (K + rate D); statics has no inertia */
 typedef struct {

@@ -361,6 +361,31 @@ void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, 
     }
 }
 
+/* Computes one of the matrices of an element of a cable at a configuration at rest. */
+static void element_at_rest(const fu_cable *cable, int k, const double *q, const double *zero, fu_at_rest which,
+                            double *K)
+{
+    const fu_elements of = elements_from(cable, q, zero, k);
+    for (int i = 0; i < cable->coordinates * cable->coordinates; ++i) K[i] = 0.0;
+    if (which == FU_STIFFNESS_AT_REST) cable->law->elastic_tangent(of.l[0], of.e, of.A, K);
+    if (which == FU_DAMPING_AT_REST && cable->tau > 0.0)
+        cable->law->damping_tangent(of.l[0], of.e, of.v, of.A, of.tau, 1.0, K);
+    if (which != FU_STIFFNESS_AT_REST) add_mass(cable, k, which == FU_MASS_AT_REST ? 1.0 : cable->mass_damping, K);
+}
+
+void fu_add_cables_at_rest(const fu_model *model, const double *q, fu_at_rest which, int stride, double *band)
+{
+    double K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
+    FU_EACH_CABLE(cable, model) {
+        const int n = cable->coordinates;
+        for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
+            element_at_rest(cable, k, q, model->zero, which, K);
+            for (int i = 0; i < n; ++i)
+                for (int j = i; j < n; ++j) band[(long)(at + i) * stride + j - i] += K[i * n + j];
+        }
+    }
+}
+
 /* Returns the sum of e'.M e'/2 over the elements (eq 3) and the bodies' share, J. */
 double fu_constant_kinetic_energy(const fu_model *model, const double *q, const double *v)
 {

@@ -34,6 +34,10 @@ void fu_rate_forces(const fu_model *model, const double *q, const double *v, dou
 void fu_discrete_forces(const fu_model *model, const double *q, const double *q_next, double *f);
 void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, double inertia, double rate,
                        double stiffness, fu_system *system);
+/* Adds a matrix of the cables, which is symmetric, at the configuration q at rest to a band over the dofs: row i has
+ * the entries of columns i, i + 1 and so on, `stride` after those of row i - 1. */
+typedef enum { FU_MASS_AT_REST, FU_DAMPING_AT_REST, FU_STIFFNESS_AT_REST } fu_at_rest;
+void fu_add_cables_at_rest(const fu_model *model, const double *q, fu_at_rest which, int stride, double *band);
 /* Adds to the matrix K (n x n) of an element factor times a' by b, of two rows of n / dim numbers and a matrix (dim x
  * dim). */
 void fu_add_element_product(int dim, int n, double factor, const double *a, const double *b, const double *by,

@@ -40,6 +40,7 @@ cdef extern from * nogil:
     #include "events/events.h"
     #include "events/list.h"
     #include "events/slack_cables.h"
+    #include "integrators/linear_model.h"
     #include "integrators/list.h"
     #include "run/run.h"
     """
@@ -233,7 +234,8 @@ cdef extern from * nogil:
     fu_array fu_state_array(const fu_model *model, const fu_state *state, int k)
     void fu_state_attach(fu_state *state, int k, void *data)
     ctypedef struct fu_rows:
-        int rows
+        int first, rows, redundant_rows, n, slide
+        int *at
         double *H
     int FU_ROW_ENTRIES_OF(int multipliers)
     ctypedef struct fu_accelerator:
@@ -262,6 +264,31 @@ cdef extern from * nogil:
     void fu_record_attach(fu_record *record, int k, double *data)
     ctypedef struct fu_weights:
         double inertia, rate, stiffness
+    ctypedef struct fu_sparse:
+        int rows
+        const int *start, *column
+        const double *value
+    int FU_MATRICES
+    int FU_STEP_FACTORS
+    ctypedef struct fu_step_factor:
+        double *L
+    ctypedef struct fu_linear_model:
+        int n, width, stride
+        const int *dof, *mixed
+        fu_sparse combinations, closing, read, held, joints
+        fu_sparse *exact
+        const double **matrices
+        double **cables
+        const double *weight
+        double *force
+        fu_step_factor *factors
+        fu_step_factor at_rest, of_mass
+        double *error
+    ctypedef enum fu_at_rest:
+        FU_MASS_AT_REST, FU_DAMPING_AT_REST, FU_STIFFNESS_AT_REST
+    void fu_add_cables_at_rest(const fu_model *model, const double *q, fu_at_rest which, int stride, double *band)
+    int FU_HALF_BAND_ROWS(int n)
+    void fu_evaluate_rows(const fu_model *model, const fu_state *state, fu_accelerator *work)
     ctypedef struct fu_integrator
     ctypedef struct fu_run:
         const fu_model *model
@@ -270,6 +297,7 @@ cdef extern from * nogil:
         const double *parameters
         double retry_factor, error_overestimate
         double *scratch
+        fu_linear_model *linear
         int n_event_functions
         const fu_event_function *event_functions
         double *event_values, *event_work, *deepest, *farthest, *deferred_at

@@ -1,6 +1,6 @@
 # Reports of a run: counts, sizes, progress, causes of failure.
 
-cdef class Report(Statics):
+cdef class Report(LinearModels):
     """Numbers of a run, read only."""
 
     def relaxed_strains(self):
@@ -55,7 +55,7 @@ cdef class Report(Statics):
         return {"steps": s.steps, "rejected_steps": s.rejected, "newton_iterations": s.newton_iterations,
                 "factorisations": s.factorisations, "newton_failures": s.newton_failures, "evaluations": s.evaluations,
                 "element_crossings": s.node_passages, "smallest_step_s": s.h_min, "largest_step_s": s.h_max,
-                "sum_of_local_error_estimates_m": s.error_sum, "largest_motion_m": self.run.motion,
+                **self._of_linear_model(), "sum_of_local_error_estimates_m": s.error_sum, "largest_motion_m": self.run.motion,
                 "time_s": {"residual": s.time_residual, "factorisation": s.time_factor, "solve": s.time_solve,
                            "step": s.time_step, "error": s.time_error, "output": s.time_output}}
 
@@ -116,6 +116,9 @@ cdef class Report(Statics):
     def self_locking(self):
         """Number of the coupling whose friction has no solution, or -1."""
         return self.run.accelerator.self_locking
+
+    cdef dict _of_linear_model(self):
+        return {} if self.linear_error is None else {"linear_model_error_m": self.linear_error[0]}
 
     @property
     def balance(self):

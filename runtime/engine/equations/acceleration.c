@@ -13,8 +13,7 @@
 #define FORCE_TOLERANCE 1e-7
 #define DIVERGED 1e30 /* the same, of a sweep that diverges */
 
-/* Computes the constraint rows of all couplings. */
-static void evaluate(const fu_model *model, const fu_state *state, fu_accelerator *work)
+void fu_evaluate_rows(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
     ++work->evaluated;
     FU_EACH_COUPLING(c, model->always_active, model->n_always_active) {
@@ -178,7 +177,7 @@ int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *
 {
     fu_system *s = &work->mass;
     const int all = model->n_multipliers;
-    evaluate(model, state, work);
+    fu_evaluate_rows(model, state, work);
     if (border(model, state->q, work)) return 1;
     for (int k = 0; k < all; ++k)
         fu_add(model, s, fu_extra(model, k), fu_extra(model, k), 1.0); /* M alone, without multipliers */
@@ -227,7 +226,7 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
 {
     double *lambda = work->rhs + model->n_band + model->n_border_dof, *prescribed = work->prescribed;
     work->self_locking = -1;
-    evaluate(model, state, work);
+    fu_evaluate_rows(model, state, work);
     const int info = factor_border(model, state, work);
     if (info) return info;
     for (int i = 0; i < model->n_dof; ++i) work->force[i] = prescribed[i] = work->work[i] = 0.0;
@@ -254,7 +253,7 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
 /* Prepares fu_response at a state; returns 0 if there is one solution. */
 int fu_prepare_response(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
-    evaluate(model, state, work);
+    fu_evaluate_rows(model, state, work);
     return factor_border(model, state, work);
 }
 
@@ -279,7 +278,7 @@ static int project(const fu_model *model, const fu_state *state, fu_accelerator 
                    const strike *struck, double *change)
 {
     double *lambda = work->rhs + model->n_band + model->n_border_dof;
-    evaluate(model, state, work);
+    fu_evaluate_rows(model, state, work);
     const int info = factor_border(model, state, work);
     if (info) return info;
     if (struck) work->rows[struck->row].rate[struck->constraint] = struck->rate;

@@ -27,6 +27,8 @@ int fu_refine_accelerations(const fu_model *model, const double *q, fu_accelerat
                             double *reaction);
 
 /* equations/acceleration.c */
+/* Computes the constraint rows of all couplings. */
+void fu_evaluate_rows(const fu_model *model, const fu_state *state, fu_accelerator *work);
 int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work);
 int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration,
                      double *reaction);

@@ -32,6 +32,9 @@ typedef struct {
     void (*account)(fu_run *run, double h);
     /* Drops data kept from step to step in its work space, as at a pause; null: none. */
     void (*forget)(fu_run *run);
+    /* Computes accelerations and forces of supports of a row, its forces and constraints in run->accelerator, and the
+     * elastic energy; returns 0 if there is one solution. Null: eq 38, and the energy of the configuration. */
+    int (*row)(fu_run *run, double *acceleration, double *reaction, double *elastic);
     int keeps_scratch;       /* checkpoints hold its work space, which is real numbers alone */
     int keeps_energy;        /* velocities are unchanged by a restart: their projection would cost energy */
     int coasts;              /* a very short step leaves no data to continue with: no restart after one */

@@ -60,6 +60,7 @@ struct fu_run {
     const fu_integrator *integrator;
     const double *parameters;  /* of the integrator */
     double *scratch;           /* of the integrator, its only writer */
+    fu_linear_model *linear;   /* of motion about the start; null for the scene's equations */
     int order;                 /* of the controlled error of positions */
     double retry_factor;       /* upper bound of the steps after a failed one, relative to it; 0 for cheap failures */
     double error_overestimate; /* estimate of the local error over that error */

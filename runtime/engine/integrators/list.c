@@ -3,9 +3,9 @@
 
 #include <string.h>
 
-extern const fu_integrator fu_genalpha, fu_explicit, fu_radau, fu_energy;
+extern const fu_integrator fu_genalpha, fu_explicit, fu_radau, fu_energy, fu_linear;
 
-static const fu_integrator *const integrators[] = {&fu_genalpha, &fu_explicit, &fu_radau, &fu_energy};
+static const fu_integrator *const integrators[] = {&fu_genalpha, &fu_explicit, &fu_radau, &fu_energy, &fu_linear};
 
 const fu_integrator *fu_integrator_of(const char *name)
 {

@@ -8,11 +8,12 @@
 #include <string.h>
 
 /* Computes accelerations and forces of supports at `now`, by eq 38; from the equations of the last step if Newton's
- * method has evaluated them there. Returns 0 if there is one solution. */
-static int accelerate(fu_run *run, double *acceleration, double *reaction)
+ * method has evaluated them there; and the elastic energy. Returns 0 if there is one solution. */
+static int accelerate(fu_run *run, double *acceleration, double *reaction, double *elastic)
 {
     const fu_model *model = run->model;
     const fu_state *now = &run->now;
+    *elastic = fu_elastic_energy(model, now);
     if (run->mass_is_near && fabs(now->t - run->residual_at) <= FU_AT_ONCE * run->duration) {
         memcpy(acceleration, now->acceleration, sizeof(double) * (size_t)model->n_dof);
         memcpy(reaction, run->force, sizeof(double) * (size_t)model->n_dof);
@@ -36,9 +37,10 @@ int fu_record_row(fu_run *run)
     memcpy(r->q + row * model->n_q, now->q, sizeof(double) * (size_t)model->n_q);
     memcpy(r->v + row * model->n_dof, now->v, sizeof(double) * (size_t)model->n_dof);
     memcpy(r->s + row * model->n_coordinates, now->s, sizeof(double) * (size_t)model->n_coordinates);
-    const int info = accelerate(run, acceleration, r->reaction + row * model->n_dof);
+    int (*const complete)(fu_run *, double *, double *, double *) =
+        run->integrator->row ? run->integrator->row : accelerate;
+    const int info = complete(run, acceleration, r->reaction + row * model->n_dof, &r->elastic[row]);
     r->kinetic[row] = fu_kinetic_energy_at(model, now);
-    r->elastic[row] = fu_elastic_energy(model, now);
     r->potential[row] = fu_potential_energy(model, now->q) + fu_coupling_potential_energy(model, now);
     r->dissipated[row] = run->dissipated;
     r->external[row] = run->external;

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from ..recorded import Recorded
 from ..section_forces.balance import Cuts
 from ..section_forces.balance_limits import known_method
 from ..section_forces.components import components
-from ..section_forces.forces import constitutive, of_equilibrium
+from ..section_forces.forces import at_start, constitutive, of_equilibrium, of_linear_model
 from ..section_forces.forces import of_run as forces_of_run
 from .frames import Frames, SectionForces, no_forces
 from .ropes import ropes_as_drawn
@@ -53,12 +53,14 @@ def _frames(scene: SceneData, time: np.ndarray, found: Mapping[str, np.ndarray],
     return Frames(scene, time, found.__getitem__, found.__contains__, drawn(scene).__getitem__, load, forces)
 
 
-def _law(scene: SceneData, value: Callable[[str], np.ndarray]) -> SectionForces:
-    """Return the section forces by the elastic law; value: nodal vectors by name."""
+def _law(scene: SceneData, value: Callable[[str], np.ndarray],
+         start: Callable[[str], np.ndarray] | None = None) -> SectionForces:
+    """Return the section forces by the elastic law; value, start: nodal vectors by name, see `Instants`."""
     def forces(cable: str, s: np.ndarray) -> dict[str, np.ndarray]:
         part = scene.cables[cable]
-        force, moment, axes, strain = constitutive(part, value(f"{cable}.nodal_vectors"),
-                                                   Cuts(cable_model(part, 0), s[None], True))
+        name = f"{cable}.nodal_vectors"
+        force, moment, axes, strain = constitutive(part, value(name), Cuts(cable_model(part, 0), s[None], True),
+                                                   None if start is None else start(name))
         return {"force": force, "moment": moment} | components(part, force, moment, axes, strain)
 
     return forces
@@ -78,7 +80,7 @@ def of_run(run: Recorded, numbers: np.ndarray) -> Frames:
 
     def forces(cable: str, s: np.ndarray) -> dict[str, np.ndarray]:
         if not is_balanced(len(numbers), len(s)) or known_method(run.scene, run.model, cable, False) != "balance":
-            return _law(run.scene, value)(cable, s)
+            return _law(run.scene, value, partial(at_start, run) if of_linear_model(run) else None)(cable, s)
         return forces_of_run(run, cable, s[None], numbers)
 
     return Frames(run.scene, run.time[numbers], value, run.__contains__, drawn(run.scene).__getitem__,

@@ -34,7 +34,8 @@ if TYPE_CHECKING:
 class Instants:
     """A scene at T instants: q (T, n_q) and v (T, n_dof) of the cables, zero of bodies; value(name): a result (T, ...).
 
-    load, weight: the applied parts of the loads and of gravity; is_rest: whether it is a state of rest.
+    load, weight: the applied parts of the loads and of gravity; is_rest: whether it is a state of rest; start(name): a
+    result (1, ...) at the start of a run by the linear model about it.
     """
 
     time: np.ndarray
@@ -44,12 +45,13 @@ class Instants:
     load: float = 1.0
     weight: float = 1.0
     is_rest: bool = False
+    start: Callable[[str], np.ndarray] | None = None
 
     def one(self, k: int) -> Instants:
         """Return instant number k alone."""
         here = slice(k, k + 1)
         return Instants(self.time[here], self.q[here], self.v[here], lambda name: self.value(name)[here], self.load,
-                        self.weight, self.is_rest)
+                        self.weight, self.is_rest, self.start)
 
 
 class PointLoad(NamedTuple):

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...errors import FunicularError, FunicularWarning, UnknownResultError, near
+from ...integrators import INTEGRATORS
 from ...kernels.libraries import kernels_of
 from ...model.model import Model
 from ...parts.cable import Cable
@@ -20,6 +22,7 @@ from ...parts.slide import Slide
 from ...parts.validation import LENGTH_TOLERANCE, show
 from ...solve.statics.rest_state import RestState
 from ..recorded import Recorded
+from .about_start import about
 from .balance import Cuts, balanced
 from .balance_limits import balanced_cables, is_cut, out_of_balance
 from .cable_loads import CableLoads, Instants
@@ -47,10 +50,12 @@ GLOBAL = {
 }
 
 
-def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts) -> tuple[np.ndarray, ...]:
+def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts, start: np.ndarray | None = None
+                 ) -> tuple[np.ndarray, ...]:
     """Return force and moment (T, n, 3) by the elastic law, section axes (T, n, 3, 3), and strains (T, n, 6) at cuts.
 
-    nodal_vectors: (T, nodes, vectors, 3). Force and moment are along the ground's axes.
+    nodal_vectors: (T, nodes, vectors, 3); start: (1, nodes, vectors, 3) of a run by the linear model about it. Force
+    and moment are along the ground's axes.
     """
     kernel = getattr(kernels_of(cable.library), f"{cable.element}_{cable.kernel_law}_section_forces")
     dim, reference, plane = cable.dim, cable.reference, cable.plane
@@ -60,10 +65,15 @@ def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts) -> tuple[n
     element, x = np.broadcast_to(cuts.element, shape), np.broadcast_to(cuts.x, shape)
     instants = np.arange(shape[0])[:, None]
     e = np.concatenate([nodal_vectors[instants, element], nodal_vectors[instants, element + 1]], axis=2)
+    e = e.reshape(-1, *e.shape[2:])
+    if start is not None:
+        start = cable.in_plane(start)[0]
+        start = np.concatenate([start[element], start[element + 1]], axis=2).reshape(e.shape)
     e0 = [] if reference is None else [reference[element].reshape(-1, *reference.shape[1:])]
     lengths = cable.mesh.mean if cable.mesh.is_even else cable.mesh.lengths[element].ravel()
-    found = kernel.rows(x.size, lengths, x.ravel(), e.reshape(-1, *e.shape[2:]), S, *e0)
-    force, moment, axes, strain = (values.reshape(*shape, *values.shape[1:]) for values in found)
+    force, moment, axes, strain = (
+        values.reshape(*shape, *values.shape[1:])
+        for values in about(lambda e: kernel.rows(x.size, lengths, x.ravel(), e, S, *e0), start, e))
     return (force, moment, axes, strain) if plane is None else (plane.out(force), plane.out(moment), plane.out(axes),
                                                                 strain)
 
@@ -79,7 +89,8 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
     of = model.cables[number]
     cuts = Cuts(of, s, side == "after")
     nodal = at.value(f"{name}.nodal_vectors")
-    force, moment, axes, strain = constitutive(cable, nodal, cuts)
+    start = None if at.start is None else at.start(f"{name}.nodal_vectors")
+    force, moment, axes, strain = constitutive(cable, nodal, cuts, start)
     if method == "constitutive":
         return {"force": force, "moment": moment} | components(cable, force, moment, axes, strain)
     if (refusal := out_of_balance(scene, model, number, at.is_rest)) is not None:
@@ -130,7 +141,19 @@ def _instants(run: Recorded, numbers: np.ndarray) -> Instants:
     for cable in model.cables:
         for into, kind in ((q, "nodal_vectors"), (v, "nodal_velocity")):
             into[:, cable.coordinates] = value(f"{cable.name}.{kind}")[..., : model.dim].reshape(len(numbers), -1)
-    return Instants(run.time[chosen], q, v, value)
+    start = partial(at_start, run) if of_linear_model(run) else None
+    return Instants(run.time[chosen], q, v, value, start=start)
+
+
+def of_linear_model(run: Recorded) -> bool:
+    """Return whether the cables of a run have the forces of the linear model about its start."""
+    method = INTEGRATORS.get(run.report.get("integrator", ""))
+    return method is not None and method.is_linear
+
+
+def at_start(run: Recorded, name: str) -> np.ndarray:
+    """Return the first row (1, ...) of a result, along the axes of the model."""
+    return run.model.as_in_model(name, run[name][:1])
 
 
 def of_equilibrium(state: RestState, name: str, s: np.ndarray, *, method: str = "balance",

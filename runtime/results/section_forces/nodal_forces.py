@@ -11,6 +11,7 @@ from scipy.sparse.linalg import splu
 from ...model.model import CableModel, Model
 from ...model.states import element_coordinates, positions
 from ...model.unknowns import by_unknowns
+from .about_start import about
 from .cable_loads import CableLoads, Instants
 from .spreads import Spread
 
@@ -50,10 +51,15 @@ def internal(cable: CableModel, at: Instants) -> np.ndarray:
     """Return the forces (T, elements, vectors, dim) of elasticity, of Kelvin-Voigt and of mass damping."""
     e, v = element_coordinates(cable, at.q), element_coordinates(cable, at.v)
     moving = cable.tau > 0 and np.any(v)
+    start = None
+    if at.start is not None:
+        vectors = at.start(f"{cable.name}.nodal_vectors")[..., : cable.shape[2]]
+        start = np.broadcast_to(np.concatenate([vectors[:, :-1], vectors[:, 1:]], axis=2), e.shape)
 
-    def forces(length: float, e: np.ndarray, v: np.ndarray, A: np.ndarray) -> np.ndarray:
-        found: np.ndarray = cable.law_kernel("elastic_force").rows(len(e), length, e, A)
+    def forces(length: float, e: np.ndarray, v: np.ndarray, A: np.ndarray, start: np.ndarray | None) -> np.ndarray:
+        found, = about(lambda e: (cable.law_kernel("elastic_force").rows(len(e), length, e, A),), start, e)
         if moving:
+            e = e if start is None else np.ascontiguousarray(start)
             damping = cable.law_kernel("damping_force")
             of_damping = A[: damping.shapes["A"][0]]  # its law has the first of these constants only
             found = found + damping.rows(len(e), length, e, v, of_damping, cable.tau)
@@ -61,9 +67,12 @@ def internal(cable: CableModel, at: Instants) -> np.ndarray:
 
     if len(cable.A) == 1:
         shape = e.shape
-        f = forces(cable.mesh.mean, e.reshape(-1, *shape[2:]), v.reshape(-1, *shape[2:]), cable.A[0]).reshape(shape)
+        flat = (-1, *shape[2:])
+        f = forces(cable.mesh.mean, e.reshape(flat), v.reshape(flat), cable.A[0],
+                   None if start is None else start.reshape(flat)).reshape(shape)
     else:  # constants of each element: a curved stress-free shape, or unequal lengths
-        f = np.stack([forces(cable.mesh.length(k), e[:, k], v[:, k], A) for k, A in enumerate(cable.A)], axis=1)
+        f = np.stack([forces(cable.mesh.length(k), e[:, k], v[:, k], A, None if start is None else start[:, k])
+                      for k, A in enumerate(cable.A)], axis=1)
     if cable.mass_damping > 0:
         f = f + cable.mass_damping * mass_times(cable, v)
     return f

@@ -29,6 +29,7 @@ from ...parts.settings import RunSettings
 from ..linear.threads import share_elements
 from ..notes.diagnosis import EMPTY, notes, trapped
 from ..notes.fast_turns import FastTurns
+from ..notes.linear_model_errors import beyond_linear_model
 from ..notes.row_notes import RowNotes
 from ..notes.sensitivity import Sensitivity, sensitive
 from ..notes.signal_steps import unresolved
@@ -169,7 +170,8 @@ def _result_notes(scene: SceneData, settings: RunSettings, run: _Begun,
     unmeasured = [] if settings.estimate else [
         *sensitive(engine, settings, seen[Sensitivity]), *grown(engine, settings, seen[SlackMotion], again),
         *uncontrolled_errors(scene, engine, settings, seen[FastTurns], seen[NormalForces])]
-    return [*notes(engine, settings), *trapped(scene, engine), *seen.notes(), *unmeasured]
+    return [*notes(engine, settings), *beyond_linear_model(engine, settings), *trapped(scene, engine), *seen.notes(),
+            *unmeasured]
 
 
 def _rows_again(scene: SceneData, initial: Start | None, method: Integrator,
@@ -241,6 +243,10 @@ def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine
     """Start the engine; return the status where the run has ended, else None. Raises SceneError for a singular start.
     """
     tol = tol_of(settings, method)
+    if method.is_linear:
+        from .linear_model import take_linear_model  # loads SciPy, which other runs do without
+
+        take_linear_model(engine, scene, model)
     status, change = engine.start(
         duration=settings.duration,
         output_step=settings.output_step,

@@ -36,6 +36,23 @@ def balance(static: StaticState) -> Balance:
     balance the forces return to their former values, zero.
     """
     model, drawn = static.model, static.keep()
+    rows, units = coordinates_of(model), units_of(static.weight, model)
+    stiffness = balance_forces(static)
+    left = np.abs(static.residual()[rows]) / units
+    load = np.max(np.abs(static.load_vector()[rows]) / units, initial=0.0)
+    sums = np.max(_size_of_sums(static, stiffness[rows][:, rows]) / units, initial=0.0)
+    at_rest = bool(np.all(left <= BALANCE_TOLERANCE * load + FORCE_ROUNDING * sums))
+    if not at_rest:
+        static.restore(drawn)
+    most = int(np.argmax(left)) if len(left) else 0
+    return Balance(float(np.max(left, initial=0.0)), _place(static, rows, most), at_rest)
+
+
+def balance_forces(static: StaticState) -> csr_array:
+    """Set the internal forces of a static state as drawn to those that balance it best; return the tangent stiffness
+    without them.
+    """
+    model = static.model
     n, rows, units = model.n_band + model.n_border_dof, coordinates_of(model), units_of(static.weight, model)
     by_law, free = ([n + k for coupling in model.couplings for k in coupling.force_unknowns
                      if coupling.follows_law == is_law] for is_law in (True, False))
@@ -46,14 +63,7 @@ def balance(static: StaticState) -> Balance:
     change[:] = 0.0
     change[free] = _shared(stiffness[rows][:, free], static.residual()[rows], units)
     static.move(change)
-    left = np.abs(static.residual()[rows]) / units
-    load = np.max(np.abs(static.load_vector()[rows]) / units, initial=0.0)
-    sums = np.max(_size_of_sums(static, stiffness[rows][:, rows]) / units, initial=0.0)
-    at_rest = bool(np.all(left <= BALANCE_TOLERANCE * load + FORCE_ROUNDING * sums))
-    if not at_rest:
-        static.restore(drawn)
-    most = int(np.argmax(left)) if len(left) else 0
-    return Balance(float(np.max(left, initial=0.0)), _place(static, rows, most), at_rest)
+    return stiffness
 
 
 def _shared(columns: csr_array, residual: np.ndarray, units: np.ndarray) -> np.ndarray:

@@ -1,0 +1,37 @@
+/* A state of a run by the linear model: its coordinates, the motion of dofs and joints, exact forces, multipliers and
+ * forces of supports: integrators/linear_state.c. */
+#ifndef FUNICULAR_INTEGRATORS_LINEAR_STATE_H
+#define FUNICULAR_INTEGRATORS_LINEAR_STATE_H
+
+#include "integrators/linear_model.h"
+
+/* Coordinates of the linear model, their rates, their second derivatives, and the a of the scheme. */
+typedef struct {
+    double *y, *rate, *second, *a;
+} fu_linear_coordinates;
+
+/* Work space: coordinates at both ends of a step; over the coordinates the linear part of the residual, the residual
+ * and then the change, and what the last step has left of it, of the size h_left; over the dofs the motion, and exact
+ * forces; changes of determined unknowns, and values of constraints. */
+typedef struct {
+    fu_linear_coordinates now, next;
+    double *linear, *change, *left, *left_now;
+    fu_small_motion motion;
+    double *force, *values, *gaps, *h_left, *h_now, *error;
+} fu_linear_space;
+
+/* Places the arrays in the scratch of a run, unless it is null; returns their number of doubles. */
+long fu_linear_lay_out(const fu_run *run, double *scratch, fu_linear_space *w);
+fu_linear_space fu_linear_space_of(const fu_run *run);
+/* Computes `next` from its coordinates, on its joints. */
+void fu_linear_kinematics(fu_run *run, const fu_linear_space *w);
+/* Computes the forces of all but the cables and the joints at `next`, in w->force. */
+void fu_linear_exact_forces(const fu_run *run, const fu_linear_space *w);
+/* Computes the multipliers of the constraints at `next` from the forces on the determined unknowns, those of w->force
+ * and of cables. */
+void fu_linear_multipliers(fu_run *run, const fu_linear_space *w);
+/* Computes the forces of supports at `next`, by the exact forces in w->force, which it overwrites: M q'' - Q + H'
+ * lambda; totals: as of fu_linear_model_cable_forces. */
+void fu_linear_reactions(fu_run *run, const fu_linear_space *w, double *reaction, fu_cable_totals *totals);
+
+#endif

@@ -1,0 +1,22 @@
+"""The linear model of motion about the start, with the generalised-alpha method."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .genalpha import GeneralisedAlpha
+
+
+@dataclass(frozen=True)
+class Linear(GeneralisedAlpha):
+    """Motion about the configuration at the start, with constant mass, damping and stiffness of cables and joints.
+
+    A step needs no matrix of its own, and no nonlinear element: for motions that are small beside the spans, such as
+    those of a contact wire. Springs that go slack, contacts that wander, bodies and loads are exact. The error of the
+    model is of the second order in the motion; it is estimated in each row of output. In time it is the
+    generalised-alpha method over the free coordinates.
+    """
+
+    name = "linear"
+    takes_modal_bodies = False
+    is_linear = True
