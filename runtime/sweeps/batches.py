@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import FunicularError
+from .abandonment import Watch
 from .layout import Layout
 from .parameters import Points
 from .subject import Subject
@@ -47,14 +48,16 @@ class Task:
     dtype: np.dtype
     programs: str
 
-    def __call__(self, batch: Batch) -> Done:
-        """Return the rows of a batch. Raises FunicularError where the worker has other programs."""
+    def __call__(self, batch: Batch, watch: Watch | None = None) -> Done:
+        """Return the rows of a batch; watch: of runs in threads. Raises FunicularError where the worker has other
+        programs.
+        """
         if (here := versions()) != self.programs:
             raise FunicularError(f"sweep: a worker has {here}, and the sweep was started with {self.programs}; install "
                                  "the same everywhere")
         columns = {name: column.tolist() for name, column in batch.values.items()}
         points = [dict(zip(columns, each, strict=True)) for each in zip(*columns.values(), strict=True)]
-        outcomes = self.subject.compute(points)
+        outcomes = self.subject.compute(points, watch)
         rows = self.layout.pack(self.dtype, batch.values, outcomes)
         return Done(rows, sum(outcome.seconds for outcome in outcomes), self.layout.failures(rows))
 

@@ -26,7 +26,7 @@ class SweepCost:
     """The estimated cost of a sweep.
 
     points: still to compute; sampled: points that were computed for the estimate; point_seconds: least, mean and
-    largest wall time of a point; workers: processes that compute; point_bytes: in the file.
+    largest wall time of a point; workers: processes or threads that compute; point_bytes: in the file.
     """
 
     points: int

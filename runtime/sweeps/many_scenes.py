@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from threading import Event
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -17,6 +16,7 @@ from ..results.run import Run
 from ..scene.scene import Scene
 from ..solve.linear.threads import available, one_blas_thread
 from ..solve.motion.trial_cache import TrialCache
+from .abandonment import Abandonment
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
@@ -28,10 +28,6 @@ SCENES_PER_THREAD = 4
 
 SINGLE_RUN_SETTINGS = ("save", "resume", "progress")
 """Arguments of `Scene.run` that name a file or a display, which many scenes would share."""
-
-
-class _Abandoned(BaseException):
-    """Ends a run whose results are no longer needed."""
 
 
 def run_many(scenes: Iterable[Scene | Callable[[], Scene]], *, threads: int | None = None,
@@ -84,11 +80,7 @@ def _bare(error: FunicularError) -> FunicularError:
 def _results(scenes: Iterator[Scene | Callable[[], Scene]], threads: int, keep: list[str] | None,
              settings: dict[str, Any]) -> Iterator[Result]:
     """Yield the results in order; nothing starts before the first is asked for."""
-    abandoned = Event()
-
-    def watch(reached: float) -> None:
-        if abandoned.is_set():
-            raise _Abandoned
+    abandonment = Abandonment()
 
     def result(of: Scene | Callable[[], Scene]) -> Result:
         try:
@@ -99,7 +91,7 @@ def _results(scenes: Iterator[Scene | Callable[[], Scene]], threads: int, keep: 
             if scene.run_settings.get("save") is not None:
                 raise SceneError("run", '"save" in the scene\'s settings names a file of one run',
                                  "leave it out where many scenes run")
-            run = scene._run(settings | {"threads": 1}, False, watch, trials)
+            run = scene._run(settings | {"threads": 1}, False, abandonment.watch, trials)
             return run if keep is None else {"time": run.time} | {name: run[name] for name in keep}
         except FunicularError as error:
             return _bare(error)
@@ -120,5 +112,5 @@ def _results(scenes: Iterator[Scene | Callable[[], Scene]], threads: int, keep: 
             while waiting:
                 yield waiting.popleft().result()
         finally:
-            abandoned.set()
+            abandonment.begin()
             pool.shutdown(wait=False, cancel_futures=True)

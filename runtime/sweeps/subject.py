@@ -8,8 +8,9 @@ import time
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
@@ -21,8 +22,10 @@ from ..parts.validation import shown
 from ..results.run import Run
 from ..scene.scene import Scene
 from ..solve.linear.threads import one_blas_thread
+from .abandonment import Watch
 from .identity import identity_of, identity_of_scene
 from .parameters import SWEEP, Points
+from .silence import silence
 from .stored_points import Keep, StoredPoint, of_dict
 
 FAILED = "failed"
@@ -31,6 +34,8 @@ RETURNED = "returned"
 
 MAX_CHECKED = 1000
 """Points that are checked before the work, 1 ms each; and values of each parameter of a grid."""
+MAX_KEPT_PARTS = 20_000
+"""Parts of checked scenes that are kept for their runs."""
 
 
 class Outcome(NamedTuple):
@@ -47,23 +52,36 @@ class Outcome(NamedTuple):
 
 
 class Subject(Protocol):
-    """Computes the outcomes of points; it is sent to the processes that compute."""
+    """Computes the outcomes of points; it is sent to the processes that compute.
+
+    takes_threads: whether threads of one process compute points at once.
+    """
+
+    takes_threads: ClassVar[bool]
 
     @property
     def digest(self) -> str:
         """Return the digest of scene or function and settings, which must be the same in a resumed sweep."""
 
-    def compute(self, points: Sequence[Mapping[str, Any]]) -> list[Outcome]:
-        """Return the outcomes of points, each a value by parameter. Raises KeyboardInterrupt alone."""
+    def compute(self, points: Sequence[Mapping[str, Any]], watch: Watch | None = None) -> list[Outcome]:
+        """Return the outcomes of points, each a value by parameter; watch: of runs in threads. Raises KeyboardInterrupt
+        alone, and what watch raises.
+        """
 
 
 @dataclass(frozen=True)
 class SceneSubject:
-    """A scene with run_settings, whose parameters are paths into it."""
+    """A scene with run_settings, whose parameters are paths into it; checked: scenes of points, by their values."""
 
+    takes_threads: ClassVar[bool] = True
     scene: Scene
     paths: Mapping[str, Path]
     keep: Keep
+    checked: dict[tuple[Any, ...], Scene] = field(default_factory=dict, repr=False, compare=False)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the state for pickling: other processes make their own scenes."""
+        return vars(self) | {"checked": {}}
 
     @classmethod
     def of(cls, scene: Scene, parameters: Sequence[str], keep: Keep) -> SceneSubject:
@@ -80,16 +98,17 @@ class SceneSubject:
 
     def scene_at(self, point: Mapping[str, Any]) -> Scene:
         """Return the scene with the values of a point. Raises SceneError."""
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", FunicularWarning)  # they stand in the scene's messages
+        with silence:  # warnings stand in the scene's messages
             return changed(self.scene, {self.paths[name]: value for name, value in point.items()})
 
     def check(self, points: Points) -> None:
         """Refuse a sweep with a scene that cannot be simulated. Raises SceneError that names the point.
 
         Few points are all checked. Of many: each value of a grid's parameters with the first ones of the others, the
-        smallest and the largest value of all parameters of samples, and points spread over all of them.
+        smallest and the largest value of all parameters of samples, and points spread over all of them. The first ones
+        are kept for `compute`.
         """
+        most = MAX_KEPT_PARTS // sum(1 for _ in self.scene.parts())
         for number in _to_check(points):
             point = points.point(number)
             try:
@@ -100,6 +119,8 @@ class SceneSubject:
                 values = ", ".join(f"{name} = {value:.9g}" if isinstance(value, float) else f"{name} = {value}"
                                    for name, value in point.items())
                 raise error.inside(f"{SWEEP} at {values}") from None
+            if len(self.checked) < most:
+                self.checked[tuple(point.values())] = scene
 
     def own_times(self, points: Points) -> int | None:
         """Return the largest number of output times of a point, None where all points have the same times."""
@@ -118,15 +139,19 @@ class SceneSubject:
             return int(np.ceil(duration.max() / output.min())) + 2
         return int(np.ceil((duration / output).max())) + 2
 
-    def compute(self, points: Sequence[Mapping[str, Any]]) -> list[Outcome]:
+    def compute(self, points: Sequence[Mapping[str, Any]], watch: Watch | None = None) -> list[Outcome]:
         """Return the outcomes of points, each a value by path."""
-        return _outcomes(self.scene_at, points, self.keep)
+        def made(point: Mapping[str, Any]) -> Scene:
+            return self.checked.pop(tuple(point.values()), None) or self.scene_at(point)
+
+        return _outcomes(made, points, self.keep, watch)
 
 
 @dataclass(frozen=True)
 class FunctionSubject:
     """A function that takes the parameters as keywords and returns a Scene, a Run, or a dict of numbers and arrays."""
 
+    takes_threads: ClassVar[bool] = False  # it may hold Python's lock, and change what other calls of it use
     function: Callable[..., Any]
     keep: Keep
     settings: Mapping[str, Any]
@@ -158,9 +183,9 @@ class FunctionSubject:
         text = identity_of(self.function)
         return hashlib.sha256(f"{text}\n{sorted(self.settings.items())!r}".encode()).hexdigest()
 
-    def compute(self, points: Sequence[Mapping[str, Any]]) -> list[Outcome]:
+    def compute(self, points: Sequence[Mapping[str, Any]], watch: Watch | None = None) -> list[Outcome]:
         """Return the outcomes of points, each a value by keyword."""
-        return _outcomes(self._made, points, self.keep)
+        return _outcomes(self._made, points, self.keep, watch)
 
     def _made(self, point: Mapping[str, Any]) -> Any:
         """Return the result of the function at a point; a scene with the settings of the sweep."""
@@ -193,21 +218,21 @@ def _with_settings(scene: Scene, settings: Mapping[str, Any]) -> Scene:
 
 
 def _outcomes(make: Callable[[Mapping[str, Any]], Any], points: Sequence[Mapping[str, Any]],
-              keep: Keep) -> list[Outcome]:
-    """Return the outcomes of points; make: returns a scene to run, a run, or results by name.
+              keep: Keep, watch: Watch | None) -> list[Outcome]:
+    """Return the outcomes of points; make: returns a scene to run, a run, or results by name; watch: of the runs.
 
     An error of one point does not stop the others; Ctrl-C does, as KeyboardInterrupt.
     """
     made = [_attempt(make, point, keep) for point in points]
     with uninterrupted(), one_blas_thread, interruptible():  # for all runs at once: each would set and reset it
-        ran = [_attempt(_run, each, keep) if isinstance(each, Scene) else each for each in made]
+        run = partial(_run, watch=watch)
+        ran = [_attempt(run, each, keep) if isinstance(each, Scene) else each for each in made]
     return [each for each in ran if isinstance(each, Outcome)]
 
 
-def _run(scene: Scene) -> Run:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # they stand in the report
-        return scene.run(progress=False)
+def _run(scene: Scene, watch: Watch | None) -> Run:
+    with silence:  # warnings stand in the report
+        return scene.run(progress=watch or False)
 
 
 def _attempt(act: Callable[[Any], Any], given: Any, keep: Keep) -> Outcome | Scene:

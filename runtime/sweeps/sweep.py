@@ -8,7 +8,7 @@ import os
 import time
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -31,6 +31,7 @@ from .parameters import SWEEP, Points, check_whole, points_of
 from .store import Store, new_store, stored
 from .stored_points import Keep
 from .subject import FAILED, Outcome, SceneSubject, Subject, subject_of
+from .thread_workers import ThreadWorkers
 from .workers import Workers, workers_of
 
 if TYPE_CHECKING:
@@ -43,7 +44,11 @@ LOG = logging.getLogger(__name__)
 MAX_BYTES_IN_MEMORY = 4e9
 """Bytes of results of a sweep without a file."""
 MIN_SECONDS_FOR_WORKERS = 2.0
-"""Seconds of work below which this process computes alone, since workers take as long to start."""
+"""Seconds of work of a function below which this process computes alone, since processes take as long to start."""
+PROCESSES_START_SECONDS, LOCKED_SHARE, MIN_GAIN = 4.0, 0.4, 0.05
+"""Seconds that processes take to start, the share of short runs in which a thread holds Python's lock, and the least
+gain of processes over threads that counts, as a share of the work.
+"""
 
 OnPoints = Callable[[int, int], None]
 """Takes the number of finished points, and of those that failed."""
@@ -129,10 +134,11 @@ def sweep(subject: Scene | Callable[..., Any], parameters: Mapping[str, Any], *,
     settings: of the runs, as `Scene.run` takes them.
 
     save: the netCDF file, written while the sweep runs; the same call resumes a stopped sweep without computing
-    finished points again. Without it results are in memory. workers: processes, one for each processor if None, 0 for
-    this process alone; cluster: the address of a Dask scheduler, whose workers are taken instead. batch: points that a
-    worker gets at once, chosen by their time if None. progress: as in `Scene.run`; a function takes the numbers of
-    finished and of failed points. on_cost: takes the `SweepCost` before the work.
+    finished points again. Without it results are in memory. workers: processes, or for short work with scenes threads,
+    one for each processor if None, 0 for this process alone; cluster: the address of a Dask scheduler, whose workers
+    are taken instead. batch: points that a worker gets at once, chosen by their time if None. progress: as in
+    `Scene.run`; a function takes the numbers of finished and of failed points. on_cost: takes the `SweepCost` before
+    the work.
 
     A row of the file has at most 2 GiB, the file 2^31 - 1 points.
 
@@ -147,10 +153,9 @@ def sweep(subject: Scene | Callable[..., Any], parameters: Mapping[str, Any], *,
     with uninterrupted(), _begun(plan, save, retry_failed) as (store, layout, missing, sampled):
         cost = _cost(plan, layout, len(missing), sampled, workers)
         tell = on_cost or (lambda cost: None)
-        alone = cluster is None and workers is None and cost.points * cost.point_seconds[1] < MIN_SECONDS_FOR_WORKERS
         try:
             if len(missing):
-                with workers_of(0 if alone else workers, cluster) as computing:
+                with _computing(plan, cost, workers, cluster) as computing:
                     cost = replace(cost, workers=computing.number)
                     LOG.info("sweep: %s", cost)
                     with interruptible():
@@ -223,6 +228,17 @@ def _begun(plan: Plan, save: str | os.PathLike[str] | None,
         if len(numbers):
             store.put(numbers, layout.pack(store.file.row_dtype, plan.points.at(numbers), [*sampled.values()]))
         yield store, layout, np.delete(missing, np.searchsorted(missing, numbers)), sampled
+
+
+def _computing(plan: Plan, cost: SweepCost, workers: int | None, cluster: str | None) -> (
+        AbstractContextManager[Workers]):
+    """Return the workers of a sweep: its cluster, processes, or for short work threads or this process alone."""
+    work, number = cost.points * cost.point_seconds[1], workers or available()
+    if cluster is not None or workers == 0:
+        return workers_of(workers, cluster)
+    if plan.subject.takes_threads and work * max(LOCKED_SHARE - 1 / number, MIN_GAIN) < PROCESSES_START_SECONDS:
+        return nullcontext(ThreadWorkers(number))
+    return workers_of(0 if workers is None and work < MIN_SECONDS_FOR_WORKERS else workers, None)
 
 
 def _cost(plan: Plan, layout: Layout, left: int, sampled: dict[int, Outcome], workers: int | None) -> SweepCost:

@@ -28,7 +28,7 @@ import numpy as np
 from ..base.interruptions import interruptible
 from ..errors import FunicularError
 from ..solve.linear.threads import available
-from .batches import Batch, Batches, Done
+from .batches import Batch, Batches, Done, Task
 
 LOG = logging.getLogger(__name__)
 
@@ -48,7 +48,7 @@ class Workers:
         """Return the number of batches that are computed at once."""
         return 1
 
-    def compute(self, task: Callable[[Batch], Done], batches: Batches,
+    def compute(self, task: Task, batches: Batches,
                 lost: Callable[[Batch, str], Done]) -> Iterator[tuple[Batch, Done]]:
         """Yield batches with their results, in any order; lost: returns the result of a point that kills its process.
         """
@@ -160,7 +160,7 @@ class DaskWorkers(Workers):
                 self._client.close(timeout=2.0)
         self._client = None
 
-    def compute(self, task: Callable[[Batch], Done], batches: Batches,
+    def compute(self, task: Task, batches: Batches,
                 lost: Callable[[Batch, str], Done]) -> Iterator[tuple[Batch, Done]]:
         """Yield batches with their results in order of completion. Raises FunicularError where the scheduler is lost.
         """
@@ -195,7 +195,7 @@ class DaskWorkers(Workers):
                 self.connect()
             yield from done
 
-    def _hand_out(self, task: Callable[[Batch], Done], batches: Batches, pending: dict[Any, Batch]) -> None:
+    def _hand_out(self, task: Task, batches: Batches, pending: dict[Any, Batch]) -> None:
         """Hand out batches until all workers have enough; when all are done, one suspect."""
         room = BATCHES_PER_WORKER * self.number
         while len(pending) < room and (batch := batches.take()) is not None:
@@ -204,7 +204,7 @@ class DaskWorkers(Workers):
         if self._alone:
             self._submit(task, self._suspects.pop(), pending)
 
-    def _submit(self, task: Callable[[Batch], Done], batch: Batch, pending: dict[Any, Batch]) -> None:
+    def _submit(self, task: Task, batch: Batch, pending: dict[Any, Batch]) -> None:
         future = self._client.submit(task, batch, pure=False)
         pending[future] = batch
         future.add_done_callback(self._ended.put)
