@@ -188,9 +188,8 @@ class Part(BaseModel, metaclass=_TranslatingType):
 
     def as_made(self) -> Self:
         """Return this part without the values that its scene found, except its name."""
-        found = [name for name, field in type(self).model_fields.items()
-                 if name != "name" and name not in self.model_fields_set and field.default_factory is None
-                 and field.default is None and getattr(self, name) is not None]
+        values, given = self.__dict__, self.__pydantic_fields_set__
+        found = [name for name in _completed_fields(type(self)) if values[name] is not None and name not in given]
         return self.completed(dict.fromkeys(found)) if found else self
 
     def refers_to(self) -> Iterator[str]:
@@ -247,6 +246,13 @@ class Part(BaseModel, metaclass=_TranslatingType):
 def _keywords(kind: type[Part]) -> Mapping[str, str]:
     """Return the fields of a kind of part by keyword."""
     return MappingProxyType({field.alias or name: name for name, field in kind.model_fields.items()})
+
+
+@cache
+def _completed_fields(kind: type[Part]) -> tuple[str, ...]:
+    """Return the fields of a kind of part that a scene may complete: those without a value by default."""
+    return tuple(name for name, field in kind.model_fields.items()
+                 if name != "name" and field.default_factory is None and field.default is None)
 
 
 ACROSS = {POINT: slice(2, 3), DIRECTION: slice(2, 3), AXIS: slice(2), ORIENTATION: slice(1, 3)}

@@ -205,8 +205,10 @@ class SceneData:
 
     def parts(self) -> Iterator[Part]:
         """Yield all parts, in an order in which they can be added."""
-        for group in _groups():
-            yield from self.group(group)
+        held = vars(self)
+        for name in _groups():
+            if group := held[name]:  # most are empty
+                yield from group.values() if isinstance(group, dict) else group
 
     def attachments(self) -> Iterator[Attachment]:
         """Yield the attachments of parts, such as those of springs, joints and the items of ropes."""
