@@ -1,6 +1,7 @@
-"""The base of the parts of a scene, and its messages on entries that it refuses."""
+"""The base of the parts of a scene, and its messages on entries that it refuses.
 
-from __future__ import annotations
+Annotations are no texts: pydantic would evaluate those of the base once more for each kind of part.
+"""
 
 import inspect
 from collections.abc import Iterable, Iterator, Mapping
@@ -25,7 +26,7 @@ else:
     ModelMetaclass = type(BaseModel)  # pydantic exports its metaclass in no other way
 
 
-def parameters_of(kind: type[Part]) -> list[inspect.Parameter]:
+def parameters_of(kind: "type[Part]") -> list[inspect.Parameter]:
     """Return the entries of a part as parameters: positional ones of its kind, required ones, others, its name.
 
     None stands for a default that is not fixed.
@@ -37,7 +38,7 @@ def parameters_of(kind: type[Part]) -> list[inspect.Parameter]:
             for name in (*kind.positional, *others) if name in fields]
 
 
-def _default(field: FieldInfo) -> Any:
+def _default(field: "FieldInfo") -> Any:
     """Return the default of a field in a signature."""
     if field.is_required():
         return inspect.Parameter.empty
@@ -102,7 +103,7 @@ class Part(BaseModel, metaclass=_TranslatingType):
     takes_lists: ClassVar[bool] = False
     """Whether the two positional entries may be lists where parts are added, see `pairs`."""
 
-    parts_within: ClassVar[tuple[type[Part], ...]] = ()
+    parts_within: ClassVar["tuple[type[Part], ...]"] = ()
     """Classes of parts in it whose names are names of results."""
     results: ClassVar[dict[str, Quantity]] = {}
     """Its results, beside the nodal vectors of cables and the modes of bodies."""
@@ -203,7 +204,7 @@ class Part(BaseModel, metaclass=_TranslatingType):
             elif isinstance(value, str) and name in naming:
                 yield value
 
-    def named_within(self) -> Iterator[Part]:
+    def named_within(self) -> "Iterator[Part]":
         """Yield the parts in it whose names are names of results, as its own."""
         return iter(())
 
@@ -259,7 +260,7 @@ ACROSS = {POINT: slice(2, 3), DIRECTION: slice(2, 3), AXIS: slice(2), ORIENTATIO
 """Components that are zero in the plane z = 0."""
 
 
-def names_a_part(field: FieldInfo) -> bool:
+def names_a_part(field: "FieldInfo") -> bool:
     """Return whether a field holds the name of another part."""
     return any(mark is NAMES_A_PART for mark in _marks(field))
 
@@ -277,7 +278,7 @@ def about_fields(kind: type[Part]) -> dict[str, About]:
             if isinstance(mark, Check) and mark.about is not None}
 
 
-def _marks(field: FieldInfo) -> Iterator[Any]:
+def _marks(field: "FieldInfo") -> Iterator[Any]:
     """Yield types, marks and checks in the annotation of a field."""
 
     def inner(annotation: Any) -> Iterator[Any]:
@@ -293,7 +294,7 @@ def _unknown(name: str, known: Iterable[str]) -> tuple[str, str]:
     return f'"{shown_path(name)}" is not known here', near(name, known)
 
 
-def _of_complaint(place: str, complaint: ErrorDetails) -> SceneError:
+def _of_complaint(place: str, complaint: "ErrorDetails") -> SceneError:
     """Return the error of a part at a place from a complaint of pydantic."""
     path, remedy = ".".join(map(str, complaint["loc"])), None
     match complaint["type"]:
