@@ -150,6 +150,7 @@ def sweep(subject: Scene | Callable[..., Any], parameters: Mapping[str, Any], *,
     """
     _check_workers(workers, cluster, batch)
     plan = Plan.of(subject, parameters, keep, method, samples, seed, settings, record_invalid)
+    _check_dask(plan, workers, cluster)
     with uninterrupted(), _begun(plan, save, retry_failed) as (store, layout, missing, sampled):
         cost = _cost(plan, layout, len(missing), sampled, workers)
         tell = on_cost or (lambda cost: None)
@@ -184,7 +185,7 @@ def sweep_cost(subject: Scene | Callable[..., Any], parameters: Mapping[str, Any
 
 
 def _check_workers(workers: int | None, cluster: str | None, batch: int | None) -> None:
-    """Refuse wrong numbers, and a sweep that lacks Dask. Raises FunicularError."""
+    """Raise SceneError for wrong numbers, and for an address that is none."""
     for name, value, least in (("workers", workers, 0), ("batch", batch, 1)):
         if value is not None:
             check_whole(name, value, least)
@@ -193,12 +194,20 @@ def _check_workers(workers: int | None, cluster: str | None, batch: int | None) 
     if cluster is not None and not isinstance(cluster, str):
         raise SceneError(SWEEP, f"cluster must be the address of a Dask scheduler, got {shown(cluster)}",
                          'give such as "tcp://127.0.0.1:8786"')
-    if workers != 0:
-        for name in ("dask", "distributed"):
-            if importlib.util.find_spec(name) is None:
-                raise FunicularError(f'sweep: needs Dask to compute on more than one core, and the package "{name}" is '
-                                     "missing; pip install 'funicular[sweep]', or compute in this process alone "
-                                     "(workers=0, --serial)")
+
+
+def _check_dask(plan: Plan, workers: int | None, cluster: str | None) -> None:
+    """Raise FunicularError for a sweep that lacks Dask; scenes without a cluster compute on threads."""
+    missing = _missing_package()
+    if missing and workers != 0 and (cluster is not None or not plan.subject.takes_threads):
+        raise FunicularError(f'sweep: needs Dask to compute on more than one core, and the package "{missing}" is '
+                             "missing; pip install 'funicular[sweep]', or compute in this process alone "
+                             "(workers=0, --serial)")
+
+
+def _missing_package() -> str | None:
+    """Return the package of Dask that is missing, None where it is installed."""
+    return next((name for name in ("dask", "distributed") if importlib.util.find_spec(name) is None), None)
 
 
 @contextmanager
@@ -232,11 +241,14 @@ def _begun(plan: Plan, save: str | os.PathLike[str] | None,
 
 def _computing(plan: Plan, cost: SweepCost, workers: int | None, cluster: str | None) -> (
         AbstractContextManager[Workers]):
-    """Return the workers of a sweep: its cluster, processes, or for short work threads or this process alone."""
+    """Return the workers of a sweep: its cluster, processes, or for short work threads or this process alone; threads
+    of scenes also where Dask is missing.
+    """
     work, number = cost.points * cost.point_seconds[1], workers or available()
     if cluster is not None or workers == 0:
         return workers_of(workers, cluster)
-    if plan.subject.takes_threads and work * max(LOCKED_SHARE - 1 / number, MIN_GAIN) < PROCESSES_START_SECONDS:
+    is_short = work * max(LOCKED_SHARE - 1 / number, MIN_GAIN) < PROCESSES_START_SECONDS
+    if plan.subject.takes_threads and (is_short or _missing_package()):
         return nullcontext(ThreadWorkers(number))
     return workers_of(0 if workers is None and work < MIN_SECONDS_FOR_WORKERS else workers, None)
 

@@ -149,8 +149,9 @@ def our_methods(n: int) -> list[Method]:
         locked = locked_seconds(make, settings)
         methods.append(Method(name, f"{integrator}, each by itself", n, lambda make=make, settings=settings: [
             scene.run(**settings) for scene in variants(make, n)], error, locked))
-        methods.append(Method(name, f"{integrator}, sweep of A.mass, workers = 0", n, partial(
-            sweep, make, n, settings), error, locked))
+        for workers in (0, 2):
+            methods.append(Method(name, f"{integrator}, sweep of A.mass, workers = {workers}", n, partial(
+                sweep, make, n, workers, settings), error, locked))
         for threads in (1, 2):
             methods.append(Method(name, f"{integrator}, run_many, threads = {threads}", n, partial(
                 run_all, make, n, threads, settings), error, locked))
@@ -163,9 +164,9 @@ def run_all(make: Callable[[float], fu.Scene], n: int, threads: int, settings: d
         assert isinstance(kept, dict), kept
 
 
-def sweep(make: Callable[[float], fu.Scene], n: int, settings: dict) -> None:
-    """Run n scenes as the points of a sweep in this process; keep the path of the rider of each."""
-    found = fu.sweep(make(1.0), {"A.mass": masses(n)}, keep=["A.position"], workers=0, progress=False, **settings)
+def sweep(make: Callable[[float], fu.Scene], n: int, workers: int, settings: dict) -> None:
+    """Run n scenes as the points of a sweep, with workers on threads; keep the path of the rider of each."""
+    found = fu.sweep(make(1.0), {"A.mass": masses(n)}, keep=["A.position"], workers=workers, progress=False, **settings)
     assert (found["status"] == "completed").all()
 
 

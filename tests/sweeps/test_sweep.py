@@ -241,6 +241,11 @@ def test_without_dask_the_remedy_is_said(monkeypatch):
                                                 "workers=0, --serial"):
         fu.sweep(square, {"x": [1], "y": [1.0]})
     assert fu.sweep(square, {"x": [1], "y": [1.0]}, **ALONE).attrs["finished"] == 1
+    with pytest.raises(fu.FunicularError, match=r"\"distributed\" is missing"):
+        fu.sweep(scene(), GRID, keep=KEPT, cluster="tcp://127.0.0.1:1")
+    monkeypatch.setattr(module, "PROCESSES_START_SECONDS", 0.0)  # long work of scenes takes threads
+    found = fu.sweep(scene(), GRID | {"A.mass": [1.0, 1.5]}, keep=KEPT, workers=2, progress=False)
+    assert found.attrs["finished"] == 12
 
 
 def test_the_cost_is_told_beforehand():
