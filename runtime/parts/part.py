@@ -243,6 +243,9 @@ class Part(BaseModel, metaclass=_TranslatingType):
         return data
 
 
+Part.__annotations__.clear()  # of class attributes, which pydantic would evaluate once more for each kind of part
+
+
 @cache
 def _keywords(kind: type[Part]) -> Mapping[str, str]:
     """Return the fields of a kind of part by keyword."""
