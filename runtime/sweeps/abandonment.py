@@ -20,7 +20,7 @@ class Abandonment:
         self._begun = Event()
 
     def begin(self) -> None:
-        """End the runs."""
+        """End the runs, each at its next report of progress."""
         self._begun.set()
 
     def watch(self, reached: float) -> None:
