@@ -108,7 +108,7 @@ class SceneSubject:
         smallest and the largest value of all parameters of samples, and points spread over all of them. The first ones
         are kept for `compute`.
         """
-        most = MAX_KEPT_PARTS // sum(1 for _ in self.scene.parts())
+        most = MAX_KEPT_PARTS // max(len([*self.scene.parts()]), 1)
         for number in _to_check(points):
             point = points.point(number)
             try:

@@ -5,6 +5,7 @@ import warnings
 
 import funicular as fu
 import pytest
+from funicular.sweeps import subject
 from funicular.sweeps import sweep as module
 from funicular.sweeps.abandonment import Abandoned, Abandonment
 from funicular.sweeps.silence import silence
@@ -110,3 +111,15 @@ def test_abandoned_runs_raise():
     abandonment.begin()
     with pytest.raises(Abandoned):
         fu.load_scene("paper51").run(**SHORT, progress=abandonment.watch)
+
+
+def test_an_empty_scene_is_refused():
+    with pytest.raises(fu.SceneError, match="is empty"):
+        fu.sweep(fu.Scene(), {"gravity.y": [-1.0, -2.0]}, keep=["energy.kinetic"], duration=1.0)
+
+
+def test_scenes_of_many_parts_are_made_again(monkeypatch):
+    """They would take much memory."""
+    expected = fu.sweep(scene(), MASSES, keep=KEPT, workers=0, progress=False)
+    monkeypatch.setattr(subject, "MAX_KEPT_PARTS", 0)
+    assert same(expected, fu.sweep(scene(), MASSES, keep=KEPT, workers=0, progress=False))
