@@ -41,16 +41,21 @@
 
 #define FU_HELPER static inline __attribute__((always_inline)) FU_BLOCK_TARGET
 
-/* n numbers of each element, `stride` from one element's to the next's */
-FU_HELPER void gather(fu_real *to, const double *from, int n, int stride)
+/* n numbers of each of `left` elements, `stride` from one element's to the next's; the last one repeated up to a block */
+FU_HELPER void gather(fu_real *to, const double *from, int n, int stride, int left)
 {
-    for (int i = 0; i < n; ++i) to[i] = (fu_real){from[i], from[stride + i], from[2 * stride + i], from[3 * stride + i]};
+    const int b = left > 1 ? stride : 0, c = left > 2 ? 2 * stride : b, d = left > 3 ? 3 * stride : c;
+    for (int i = 0; i < n; ++i) to[i] = (fu_real){from[i], from[b + i], from[c + i], from[d + i]};
 }
 
-FU_HELPER void scatter(double *to, const fu_real *from, int n)
+FU_HELPER void scatter(double *to, const fu_real *from, int n, int left)
 {
-    for (int k = 0; k < FU_BLOCK; ++k)
-        for (int i = 0; i < n; ++i) to[k * n + i] = from[i][k];
+    if (left == FU_BLOCK)
+        for (int k = 0; k < FU_BLOCK; ++k)
+            for (int i = 0; i < n; ++i) to[k * n + i] = from[i][k];
+    else
+        for (int k = 0; k < left; ++k)
+            for (int i = 0; i < n; ++i) to[k * n + i] = from[i][k];
 }
 
 /* elastic_force of a law: the name of its kernel, sizes of its arrays */
@@ -62,11 +67,12 @@ FU_BLOCK_TARGET static void block_##name(int n, const fu_elements *of, double *o
     fu_real A[size_A]; \
     fu_real f[size_f]; \
     for (int k = 0; k < n; k += FU_BLOCK) { \
-        if (of->l_stride) gather(&l, of->l + k, 1, 1); \
-        gather(e, of->e + (long)k * of->per_node, size_e, of->per_node); \
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, size_A, of->A_stride); \
+        const int left = n - k < FU_BLOCK ? n - k : FU_BLOCK; \
+        if (of->l_stride) gather(&l, of->l + k, 1, 1, left); \
+        gather(e, of->e + (long)k * of->per_node, size_e, of->per_node, left); \
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, size_A, of->A_stride, left); \
         name(l, e, A, f); \
-        scatter(out + k * size_f, f, size_f); \
+        scatter(out + k * size_f, f, size_f, left); \
     } \
 }
 
@@ -79,11 +85,12 @@ FU_BLOCK_TARGET static void block_##name(int n, const fu_elements *of, double *o
     fu_real A[size_A]; \
     fu_real K[size_K]; \
     for (int k = 0; k < n; k += FU_BLOCK) { \
-        if (of->l_stride) gather(&l, of->l + k, 1, 1); \
-        gather(e, of->e + (long)k * of->per_node, size_e, of->per_node); \
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, size_A, of->A_stride); \
+        const int left = n - k < FU_BLOCK ? n - k : FU_BLOCK; \
+        if (of->l_stride) gather(&l, of->l + k, 1, 1, left); \
+        gather(e, of->e + (long)k * of->per_node, size_e, of->per_node, left); \
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, size_A, of->A_stride, left); \
         name(l, e, A, K); \
-        scatter(out + k * size_K, K, size_K); \
+        scatter(out + k * size_K, K, size_K, left); \
     } \
 }
 
@@ -98,12 +105,13 @@ FU_BLOCK_TARGET static void block_##name(int n, const fu_elements *of, double *o
     fu_real tau = FU_NUMBER(of->tau); \
     fu_real f[size_f]; \
     for (int k = 0; k < n; k += FU_BLOCK) { \
-        if (of->l_stride) gather(&l, of->l + k, 1, 1); \
-        gather(e, of->e + (long)k * of->per_node, size_e, of->per_node); \
-        gather(v, of->v + (long)k * of->per_node, size_v, of->per_node); \
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, size_A, of->A_stride); \
+        const int left = n - k < FU_BLOCK ? n - k : FU_BLOCK; \
+        if (of->l_stride) gather(&l, of->l + k, 1, 1, left); \
+        gather(e, of->e + (long)k * of->per_node, size_e, of->per_node, left); \
+        gather(v, of->v + (long)k * of->per_node, size_v, of->per_node, left); \
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, size_A, of->A_stride, left); \
         name(l, e, v, A, tau, f); \
-        scatter(out + k * size_f, f, size_f); \
+        scatter(out + k * size_f, f, size_f, left); \
     } \
 }
 
@@ -118,12 +126,13 @@ FU_BLOCK_TARGET static void block_##name(int n, const fu_elements *of, double *o
     fu_real tau = FU_NUMBER(of->tau); \
     fu_real P[size_P]; \
     for (int k = 0; k < n; k += FU_BLOCK) { \
-        if (of->l_stride) gather(&l, of->l + k, 1, 1); \
-        gather(e, of->e + (long)k * of->per_node, size_e, of->per_node); \
-        gather(v, of->v + (long)k * of->per_node, size_v, of->per_node); \
-        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, size_A, of->A_stride); \
+        const int left = n - k < FU_BLOCK ? n - k : FU_BLOCK; \
+        if (of->l_stride) gather(&l, of->l + k, 1, 1, left); \
+        gather(e, of->e + (long)k * of->per_node, size_e, of->per_node, left); \
+        gather(v, of->v + (long)k * of->per_node, size_v, of->per_node, left); \
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, size_A, of->A_stride, left); \
         name(l, e, v, A, tau, P); \
-        scatter(out + k * size_P, P, size_P); \
+        scatter(out + k * size_P, P, size_P, left); \
     } \
 }
 

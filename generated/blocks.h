@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#define FU_BLOCK_ELEMENTS 4 /* they take multiples of so many */
+#define FU_BLOCK_ELEMENTS 4 /* at once; the rest of a cable takes as long */
 
 /* Consecutive elements: length, retardation time, coordinates and rates of the first with what lies between two first
  * nodes, lengths and constants of the law with what lies between two elements' (zero: they are equal). */

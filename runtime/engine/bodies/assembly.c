@@ -22,10 +22,11 @@ static fu_elements elements_from(const fu_cable *cable, const double *q, const d
                          cable->l_stride};
 }
 
-/* Returns the number of n elements that a block kernel takes; the others are evaluated one by one. */
+/* Returns the number of n elements that a block kernel takes. A single one behind whole blocks is evaluated alone,
+ * since a block takes longer. */
 static int in_blocks(fu_block kernel, int n)
 {
-    return kernel ? n - n % FU_BLOCK_ELEMENTS : 0;
+    return kernel ? n - (n % FU_BLOCK_ELEMENTS == 1) : 0;
 }
 
 /* Returns the number of elements of the next chunk, from the k-th on. */
