@@ -149,10 +149,17 @@ class _Border:
         bodies = {body for end in coupling.ends for body in self._bodies_of(end)}
         bodies |= {group for dofs in coupling.adjacent for group in self._of_unknowns(self._unknowns(dofs)).groups}
         internal = self.graph.group(unknowns, None if coupling.follows_law else bodies)
-        if isinstance(coupling, SlideModel):
-            self.slides.append(internal)
-        for place in [*places, *(self.cables[k] for k in coupling.along)]:
+        for place in places:
             self._couple({internal}, place)
+        if not isinstance(coupling, SlideModel):
+            for k in coupling.along:
+                self._couple({internal}, self.cables[k])
+            return
+        self.slides.append(internal)
+        for k in coupling.along:  # it is on one element at a time, whose unknowns of the band are in one chain
+            self.graph.join({internal, *self.cables[k].groups})
+            if chains := self.cables[k].chains:
+                self.graph.follow(internal, max(chains, key=np.diff(self.model.chains).__getitem__), chains)
 
     def _bodies_of(self, end: AttachmentModel) -> set[int]:
         """Return the groups of the body of an attachment, on a slide those of the rider."""

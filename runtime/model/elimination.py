@@ -29,7 +29,8 @@ SOLVES_PER_FACTORISATION = 5
 
 @dataclass(eq=False, repr=False)
 class Elimination:
-    """Fronts as in engine/linear/fronts.h; strips (n, 2): an unknown and a chain coupled to it, increasing.
+    """Fronts as in engine/linear/fronts.h; strips (n, 3): an unknown, a chain coupled to it, increasing, and 1 for
+    memory that moves from one chain to another with a slide, after the others of its unknown; else 0.
 
     banded_front: a front without neighbours that may be a band in an order found by the engine, -1 for none.
     """
@@ -127,7 +128,7 @@ def dense(m: int, strips: np.ndarray) -> Elimination:
 @lru_cache(maxsize=64)
 def dense_beside(m: int, chains: int) -> Elimination:
     """Return the elimination of m unknowns in one front, all coupled to each of a number of chains."""
-    return dense(m, np.array(np.divmod(np.arange(m * chains), max(chains, 1))).T)
+    return dense(m, np.array([*np.divmod(np.arange(m * chains), max(chains, 1)), np.zeros(m * chains, dtype=int)]).T)
 
 
 class BorderGraph:
@@ -140,6 +141,7 @@ class BorderGraph:
         self.unknowns: list[np.ndarray] = []
         self.beside: list[set[int]] = []
         self.on_chain: dict[int, set[int]] = {}
+        self.moving: dict[int, tuple[int, frozenset[int]]] = {}
         self.waits: dict[int, set[int]] = {}
 
     def group(self, unknowns: Iterable[int], waits: Iterable[int] | None = None) -> int:
@@ -162,19 +164,29 @@ class BorderGraph:
         for chain in chains:
             self.on_chain.setdefault(chain, set()).add(group)
 
+    def follow(self, group: int, longest: int, chains: Iterable[int]) -> None:
+        """Couple a group to chains with one of which at a time it has entries; longest: the one with most rows."""
+        self.moving[group] = longest, frozenset(chains)
+
     def eliminate(self) -> Elimination:
         """Return the elimination: one front, or those of minimum degree where these save operations.
 
         Scenes with equal graphs, such as those of one topology, share the analysis and the arrays.
         """
         return eliminated(tuple(tuple(own.tolist()) for own in self.unknowns), tuple(map(frozenset, self.beside)),
-                          _frozen(self.on_chain), _frozen(self.waits))
+                          _frozen(self.on_chain), tuple(sorted(self.moving.items())), _frozen(self.waits))
 
     def _eliminated(self) -> Elimination:
-        pairs = [(int(unknown), chain) for chain, groups in self.on_chain.items() for group in groups
-                 for unknown in self.unknowns[group]]
-        strips = np.array(sorted(pairs), dtype=int).reshape(-1, 2)
-        for groups in self.on_chain.values():
+        memory = [(int(unknown), 0, chain) for chain, groups in self.on_chain.items() for group in groups
+                  for unknown in self.unknowns[group]]
+        memory += [(int(unknown), 1, longest) for group, (longest, _) in self.moving.items()
+                   for unknown in self.unknowns[group]]
+        strips = np.array(sorted(memory), dtype=int).reshape(-1, 3)[:, [0, 2, 1]]
+        on_chain = {chain: set(groups) for chain, groups in self.on_chain.items()}
+        for group, (_, chains) in self.moving.items():
+            for chain in chains:
+                on_chain.setdefault(chain, set()).add(group)
+        for groups in on_chain.values():
             self.join(groups)
         sparse = self._laid_out(*self._merged(*self._fronts()), strips)
         return sparse if sparse.cost < _cost(sparse.m, 0) else dense(sparse.m, strips)
@@ -307,12 +319,13 @@ def _frozen(sets: dict[int, set[int]]) -> tuple[tuple[int, frozenset[int]], ...]
 @lru_cache(maxsize=32)
 def eliminated(unknowns: tuple[tuple[int, ...], ...], beside: tuple[frozenset[int], ...],
                on_chain: tuple[tuple[int, frozenset[int]], ...],
+               moving: tuple[tuple[int, tuple[int, frozenset[int]]], ...],
                waits: tuple[tuple[int, frozenset[int]], ...]) -> Elimination:
     """Return the elimination of a `BorderGraph`, given by its attributes, cached."""
     graph = BorderGraph()
     graph.unknowns, graph.beside = [np.array(own, dtype=int) for own in unknowns], [set(groups) for groups in beside]
     graph.on_chain = {chain: set(groups) for chain, groups in on_chain}
-    graph.waits = {group: set(groups) for group, groups in waits}
+    graph.moving, graph.waits = dict(moving), {group: set(groups) for group, groups in waits}
     return graph._eliminated()
 
 

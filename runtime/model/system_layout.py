@@ -36,17 +36,14 @@ class SystemLayout:
     @classmethod
     def of(cls, elimination: Fronts, chains: np.ndarray, beyond: int) -> SystemLayout:
         """Return the layout; chains: as in `Numbering`; beyond: rows that the engine adds to each strip of X."""
-        k, chain = elimination.strips.T
+        k, chain, moves = elimination.strips.T
         lengths = np.diff(chains)[chain]
         ends, ends_of_x = np.cumsum(lengths), np.cumsum(lengths + beyond)
-        on_chain = np.argsort(chain, kind="stable")
         middles = (chains[:-1] + chains[1:]) // 2
         arrays = {name: getattr(elimination, name) for name in OF_FRONTS} | {
             "strips": np.stack([k, chain, ends - lengths - chains[chain],
-                                ends_of_x - lengths - beyond - chains[chain]], axis=1).ravel(),
+                                ends_of_x - lengths - beyond - chains[chain], moves * lengths], axis=1).ravel(),
             "first_strip": np.searchsorted(k, np.arange(elimination.m + 1)),
-            "on_chain": on_chain,
-            "chain_start": np.searchsorted(chain[on_chain], np.arange(len(chains))),
             "chains": chains,
             "half": np.searchsorted(np.sort([*chains[:-1], *middles]), np.arange(chains[-1]), "right") - 1,
         }

@@ -136,6 +136,12 @@ def test_the_band_of_many_slides_is_as_wide_for_more_of_them():
     assert widths[0] == widths[1]
 
 
+def test_columns_of_slides_take_memory_in_proportion_to_them():
+    """A slide is on one part of the cable at a time: it has one strip for each of its unknowns, and not one a part."""
+    strips = [len(build(slides(count)).newton.strips) for count in (48, 96, 192)]
+    assert strips[2] - strips[1] == pytest.approx(2 * (strips[1] - strips[0]), rel=0.05)
+
+
 @pytest.mark.parametrize("integrator", ["genalpha", "energy", "radau"])
 def test_dividing_a_cable_with_many_slides_changes_nothing_but_rounding(integrator, monkeypatch):
     """Slides pass from one part of the cable to the next. Steps of 20 ms fail, and rounding decides on their halves."""

@@ -172,7 +172,7 @@ cdef extern from * nogil:
     ctypedef struct fu_span:
         int first, end
     ctypedef struct fu_strip:
-        int k, chain, at, x
+        int k, chain, at, x, room
     ctypedef struct fu_matrix_block:
         int k, strip
         fu_span rows
@@ -191,14 +191,14 @@ cdef extern from * nogil:
         fu_banded_front banded
     ctypedef struct fu_system:
         int n, width, m, n_chains, n_strips, n_strip_rows
-        const fu_strip *strips
-        const int *first_strip, *chain_start, *on_chain
-        int *factorisations, *n_columns, *n_rows, *constant_columns, *constant_rows
+        fu_strip *strips
+        const int *first_strip
+        int *chain_start, *on_chain, *factorisations, *n_columns, *n_rows
         const fu_fronts *fronts
         fu_factors factors
         const int *chains, *half
         double *K, *L, *U, *B, *C, *D, *X, *inverse, *mirror
-        fu_span *span_B, *span_C
+        fu_span *span_B, *span_C, *span_X
         fu_matrix_block *columns, *rows
         int *pivot_band, *pivot_border, *pivot_full
         double *full

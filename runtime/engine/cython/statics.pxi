@@ -22,11 +22,13 @@ cdef class Statics(Translation):
             used = np.flatnonzero(corner)
             entries.append((n + self.corner[0][used], n + self.corner[1][used], corner[used]))
         if system.n_strip_rows:
-            strips, chains = self.newton_elimination.strips, np.array([system.chains[i] for i in range(system.n_chains + 1)])
+            strips = np.asarray(<int[:system.n_strips, :5]><int *>system.strips)
+            chains = np.array([system.chains[i] for i in range(system.n_chains + 1)])
+            lengths = np.diff(chains)[strips[:, 1]]
             in_band = np.concatenate([np.arange(*chains[chain:chain + 2]) for chain in strips[:, 1]])
-            beside = n + np.repeat(strips[:, 0], np.diff(chains)[strips[:, 1]])
-            right = np.asarray(<double[:system.n_strip_rows]>system.B)
-            below = np.asarray(<double[:system.n_strip_rows]>system.C)
+            at, beside = in_band + np.repeat(strips[:, 2], lengths), n + np.repeat(strips[:, 0], lengths)
+            right = np.asarray(<double[:system.n_strip_rows]>system.B)[at]
+            below = np.asarray(<double[:system.n_strip_rows]>system.C)[at]
             used = np.flatnonzero(right)
             entries.append((in_band[used], beside[used], right[used]))
             used = np.flatnonzero(below)
@@ -250,7 +252,8 @@ cdef class Statics(Translation):
         for k in range(system.n_strips):
             j = n + system.strips[k].k
             for row in range(system.chains[system.strips[k].chain], system.chains[system.strips[k].chain + 1]):
-                full[row, j], full[j, row] = system.B[system.strips[k].at + row], system.C[system.strips[k].at + row]
+                full[row, j] += system.B[system.strips[k].at + row]
+                full[j, row] += system.C[system.strips[k].at + row]
 
     cdef _weigh(self, double inertia, double rate, double stiffness):
         cdef fu_weights weights

@@ -309,15 +309,15 @@ cdef class Translation(Arrays):
         cdef dict first = layout.first
         system.n_strips, system.n_strip_rows = n, self._counted(layout.rows)
         system.strips = <fu_strip *>(numbers + <int>first["strips"])
-        system.first_strip, system.on_chain = numbers + <int>first["first_strip"], numbers + <int>first["on_chain"]
-        system.chain_start = numbers + <int>first["chain_start"]
+        system.first_strip = numbers + <int>first["first_strip"]
+        system.on_chain, system.chain_start = self._int_zeros(n), self._int_zeros(chains + 1)
         system.B, system.C = self._zeros(system.n_strip_rows), self._zeros(system.n_strip_rows)
         system.X = self._zeros(self._counted(layout.rows_of_x))
         system.span_B, system.span_C = <fu_span *>self._int_zeros(2 * 2 * n), <fu_span *>self._int_zeros(2 * 2 * n)
+        system.span_X = <fu_span *>self._int_zeros(2 * 2 * n)
         system.columns, system.rows = <fu_matrix_block *>self._int_zeros(4 * 2 * n), <fu_matrix_block *>self._int_zeros(4 * 2 * n)
         system.factorisations = self._int_zeros(chains)
         system.n_columns, system.n_rows = self._int_zeros(chains), self._int_zeros(chains)
-        system.constant_columns, system.constant_rows = self._int_zeros(chains), self._int_zeros(chains)
 
     cdef int _counted(self, double n) except -1:
         """Return a count as C's int. Raises MemoryError on overflow."""

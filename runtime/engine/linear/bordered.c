@@ -121,8 +121,27 @@ static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, 
                        x + start, &n, &info);
 }
 
-/* Returns the strip of an unknown of the border in a chain, -1 if there is none. */
-int fu_strip_of(const fu_system *s, int k, int chain)
+/* Returns whether a strip has entries of B or C. */
+static int has_entries(const fu_system *s, int strip)
+{
+    const fu_span *B = s->span_B + FU_HALVES * strip, *C = s->span_C + FU_HALVES * strip;
+    return B[0].end || B[1].end || C[0].end || C[1].end;
+}
+
+/* Moves a strip without entries to another chain; returns whether it may move there. */
+static int moves(fu_system *s, int strip, int chain)
+{
+    fu_strip *of = s->strips + strip;
+    if (of->room < size_of(s, chain) || has_entries(s, strip)) return 0;
+    const int shift = s->chains[of->chain] - s->chains[chain];
+    of->at += shift;
+    of->x += shift;
+    of->chain = chain;
+    return 1;
+}
+
+/* Returns the strip for entries of an unknown of the border in a chain, -1 if there is none. */
+int fu_strip_of(fu_system *s, int k, int chain)
 {
     const int first = s->first_strip[k], end = s->first_strip[k + 1];
     const int likely =
@@ -130,6 +149,8 @@ int fu_strip_of(const fu_system *s, int k, int chain)
     if (likely >= first && likely < end && s->strips[likely].chain == chain) return likely;
     for (int i = first; i < end; ++i)
         if (s->strips[i].chain == chain) return i;
+    for (int i = first; i < end; ++i)
+        if (moves(s, i, chain)) return i;
     return -1;
 }
 
@@ -143,54 +164,72 @@ static double times(const fu_system *s, const fu_matrix_block *p, fu_span of, co
     return sum;
 }
 
-/* Finds the significant rows of a column of X in a chain, by halves; returns the number of blocks. The column decays
- * away from the rows that it touches, finally to subnormal numbers, which slow down the processor. */
-int fu_matrix_blocks(const fu_system *s, int strip, const double *x, fu_matrix_block *blocks)
+/* Finds the significant rows of a column of X in the halves of its chain. The column decays away from the rows that it
+ * touches, finally to subnormal numbers, which slow down the processor. */
+void fu_find_significant(const fu_system *s, int strip, const double *x, fu_span rows[FU_HALVES])
 {
     const int chain = s->strips[strip].chain;
     const int begin = s->chains[chain], end = s->chains[chain + 1], middle = (begin + end) / 2;
     const fu_span halves[FU_HALVES] = {{begin, middle}, {middle, end}};
     double largest = 0.0;
-    int n = 0;
     for (int i = begin; i < end; ++i) largest = fabs(x[i]) > largest ? fabs(x[i]) : largest;
     for (int half = 0; half < FU_HALVES; ++half) {
-        fu_span rows = halves[half];
-        while (rows.first < rows.end && fabs(x[rows.first]) <= NEGLIGIBLE_ENTRY * largest) ++rows.first;
-        while (rows.first < rows.end && fabs(x[rows.end - 1]) <= NEGLIGIBLE_ENTRY * largest) --rows.end;
-        if (rows.first < rows.end) blocks[n++] = (fu_matrix_block){s->strips[strip].k, strip, rows};
+        fu_span of = halves[half];
+        while (of.first < of.end && fabs(x[of.first]) <= NEGLIGIBLE_ENTRY * largest) ++of.first;
+        while (of.first < of.end && fabs(x[of.end - 1]) <= NEGLIGIBLE_ENTRY * largest) --of.end;
+        rows[half] = of.first < of.end ? of : (fu_span){s->n, 0};
     }
+}
+
+/* Lists the blocks of a strip that have rows; returns their number. */
+int fu_list_blocks(const fu_system *s, int strip, const fu_span rows[FU_HALVES], fu_matrix_block *blocks)
+{
+    int n = 0;
+    for (int half = 0; half < FU_HALVES; ++half)
+        if (rows[half].end) blocks[n++] = (fu_matrix_block){s->strips[strip].k, strip, rows[half]};
     return n;
 }
 
-/* Computes a column of X = K^-1 B in a chain; returns the number of its blocks. */
-static int solve_column(fu_system *s, const fu_lapack *lapack, int strip, fu_matrix_block *blocks)
+/* Computes a column of X = K^-1 B in a chain. */
+static void solve_column(fu_system *s, const fu_lapack *lapack, int strip)
 {
     const int chain = s->strips[strip].chain, begin = s->chains[chain], end = s->chains[chain + 1];
     const fu_span *of = s->span_B + FU_HALVES * strip;
+    fu_span *rows = s->span_X + FU_HALVES * strip;
     double *x = s->X + s->strips[strip].x, *B = s->B + s->strips[strip].at;
-    if (!of[0].end && !of[1].end) return 0;
+    rows[0] = rows[1] = (fu_span){s->n, 0};
+    if (!of[0].end && !of[1].end) return;
     for (int i = begin; i < end + FU_BAND_BEYOND(s->width); ++i) x[i] = 0.0;
     for (int half = 0; half < FU_HALVES; ++half)
         for (int i = of[half].first; i < of[half].end; ++i) x[i] = B[i];
     solve_chain(s, lapack, chain, (fu_span){of[of[0].end == 0].first, of[of[1].end != 0].end}, x);
-    return fu_matrix_blocks(s, strip, x, blocks);
+    fu_find_significant(s, strip, x, rows);
 }
 
-/* Computes the columns of X and the blocks of C that are not constant. */
+/* Lists the strips with entries by chain, in each by unknown. */
+static void list_strips(fu_system *s)
+{
+    int *start = s->chain_start;
+    for (int c = 0; c <= s->n_chains; ++c) start[c] = 0;
+    for (int i = 0; i < s->n_strips; ++i) start[s->strips[i].chain] += has_entries(s, i);
+    for (int c = 1; c <= s->n_chains; ++c) start[c] += start[c - 1];
+    for (int i = s->n_strips - 1; i >= 0; --i)
+        if (has_entries(s, i)) s->on_chain[--start[s->strips[i].chain]] = i;
+}
+
+/* Computes the columns of X that are not constant, and lists the blocks of X and C. */
 static void couple(fu_system *s, const fu_lapack *lapack)
 {
+    list_strips(s);
     for (int c = 0; c < s->n_chains; ++c) {
         const int start = FU_HALVES * s->chain_start[c];
         fu_matrix_block *columns = s->columns + start, *rows = s->rows + start;
-        s->n_columns[c] = s->constant_columns[c];
-        s->n_rows[c] = s->constant_rows[c];
+        s->n_columns[c] = s->n_rows[c] = 0;
         for (int i = s->chain_start[c]; i < s->chain_start[c + 1]; ++i) {
-            const int strip = s->on_chain[i], k = s->strips[strip].k;
-            const fu_span *of = s->span_C + FU_HALVES * strip;
-            if (k < s->constant) continue;
-            for (int half = 0; half < FU_HALVES; ++half)
-                if (of[half].end) rows[s->n_rows[c]++] = (fu_matrix_block){k, strip, of[half]};
-            s->n_columns[c] += solve_column(s, lapack, strip, columns + s->n_columns[c]);
+            const int strip = s->on_chain[i];
+            if (s->strips[strip].k >= s->constant) solve_column(s, lapack, strip);
+            s->n_rows[c] += fu_list_blocks(s, strip, s->span_C + FU_HALVES * strip, rows + s->n_rows[c]);
+            s->n_columns[c] += fu_list_blocks(s, strip, s->span_X + FU_HALVES * strip, columns + s->n_columns[c]);
         }
     }
 }
@@ -200,20 +239,12 @@ void fu_system_keep_border(fu_system *s, const fu_lapack *lapack, int columns)
 {
     couple(s, lapack);
     s->constant = columns;
-    for (int c = 0; c < s->n_chains; ++c) {
-        const int start = FU_HALVES * s->chain_start[c];
-        const fu_matrix_block *column = s->columns + start, *row = s->rows + start;
-        int *count[2] = {&s->constant_columns[c], &s->constant_rows[c]};
-        for (*count[0] = 0; *count[0] < s->n_columns[c] && column[*count[0]].k < columns;) ++*count[0];
-        for (*count[1] = 0; *count[1] < s->n_rows[c] && row[*count[1]].k < columns;) ++*count[1];
-    }
 }
 
 /* Keeps nothing of the border constant. */
 void fu_system_release_border(fu_system *s)
 {
     s->constant = 0;
-    for (int c = 0; c < s->n_chains; ++c) s->constant_columns[c] = s->constant_rows[c] = 0;
 }
 
 /* Computes and factors the Schur complement of the factored band, D - C K^-1 B, in place of D or beside it; returns 0,

@@ -159,8 +159,8 @@ static void solve_chain(const fu_complex_system *c, const fu_system *s, const fu
     for (int i = 0; i < n; ++i) x[first + i] = (fu_complex){re[i], im[i]};
 }
 
-/* Computes a column of X in a chain and finds its significant rows, unless B is empty there; returns the number of
- * blocks. size: work space of the band's size. */
+/* Computes a column of X in a chain and lists its significant blocks, unless B is empty there; returns their number.
+ * size: work space of the band's size. */
 static int solve_column(fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, int strip, double *size,
                         fu_matrix_block *blocks)
 {
@@ -171,7 +171,9 @@ static int solve_column(fu_complex_system *c, const fu_system *s, const fu_lapac
     memcpy(x + first, B + first, sizeof(fu_complex) * (size_t)(end - first));
     solve_chain(c, s, lapack, chain, of[of[0].end == 0].first, x);
     for (int i = first; i < end; ++i) size[i] = fabs(x[i].re) + fabs(x[i].im);
-    return fu_matrix_blocks(s, strip, size, blocks);
+    fu_span rows[FU_HALVES];
+    fu_find_significant(s, strip, size, rows);
+    return fu_list_blocks(s, strip, rows, blocks);
 }
 
 /* Subtracts the contribution of a chain from D, to form the Schur complement. */

@@ -60,9 +60,10 @@ typedef struct {
 } fu_span;
 
 /* Strip of unknown k of the border in a chain: columns of B and X, a row of C. Its entry in a row of the band is at
- * `at` + row of B and C, at `x` + row of X. */
+ * `at` + row of B and C, at `x` + row of X. room: 0, or the rows of a strip that follows a slide: without entries it
+ * may move to another chain. */
 typedef struct {
-    int k, chain, at, x;
+    int k, chain, at, x, room;
 } fu_strip;
 
 /* Block of a column of X, or a row of C, in half a chain. */
@@ -80,27 +81,28 @@ typedef struct {
     int n, width; /* band part: size, half bandwidth */
     int m;        /* border */
     int n_chains;
-    int constant;                      /* number of first unknowns of the border that are constant */
-    int definite;                      /* all chains are factored as FU_SYMMETRIC */
-    int *factorisations;               /* n_chains: factorisation of each */
-    int n_strips, n_strip_rows;        /* n_strip_rows: the numbers of B, or of C */
-    const fu_strip *strips;            /* by unknown of the border, then by chain */
-    const int *first_strip;            /* m + 1: of each unknown of the border, and n_strips */
-    const int *chain_start, *on_chain; /* n_chains + 1: first place in on_chain of the strips of each chain */
-    const int *chains;                 /* n_chains + 1: the first row of each, and n */
-    const int *half;                   /* of each row of the band: 2 chain, plus 1 from the middle on */
-    double *K;                         /* LAPACK's band storage, FU_BAND_ROWS x n; shared by all systems of a run */
-    double *L, *U;                     /* (width + 1) x n, and FU_BAND_MORE for each chain */
-    double *mirror;                    /* n: right sides from the ends of chains backwards */
-    double *B;                         /* strip by strip */
-    double *C;                         /* the border's rows, likewise */
-    double *D;                         /* stored as by `fronts`, with one more number, which must stay zero */
+    int constant;                /* number of first unknowns of the border that are constant */
+    int definite;                /* all chains are factored as FU_SYMMETRIC */
+    int *factorisations;         /* n_chains: factorisation of each */
+    int n_strips, n_strip_rows;  /* n_strip_rows: the numbers of B, or of C */
+    fu_strip *strips;            /* by unknown of the border, those that may move last */
+    const int *first_strip;      /* m + 1: of each unknown of the border, and n_strips */
+    int *chain_start, *on_chain; /* n_chains + 1: first place in on_chain of the strips of each chain with entries */
+    const int *chains;           /* n_chains + 1: the first row of each, and n */
+    const int *half;             /* of each row of the band: 2 chain, plus 1 from the middle on */
+    double *K;                   /* LAPACK's band storage, FU_BAND_ROWS x n; shared by all systems of a run */
+    double *L, *U;               /* (width + 1) x n, and FU_BAND_MORE for each chain */
+    double *mirror;              /* n: right sides from the ends of chains backwards */
+    double *B;                   /* strip by strip */
+    double *C;                   /* the border's rows, likewise */
+    double *D;                   /* stored as by `fronts`, with one more number, which must stay zero */
     const fu_fronts *fronts;
     fu_factors factors;              /* of D, unless there is only one front: then D has them */
     double *X;                       /* K^-1 B, FU_BAND_BEYOND more a strip */
     fu_span *span_B, *span_C;        /* FU_HALVES a strip: nonzero rows of each half; end 0 if none */
+    fu_span *span_X;                 /* likewise, the significant rows */
     fu_matrix_block *columns, *rows; /* of X and C: those of a chain from FU_HALVES chain_start on */
-    int *n_columns, *n_rows, *constant_columns, *constant_rows; /* n_chains: numbers of blocks, and of constant ones */
+    int *n_columns, *n_rows;         /* n_chains: numbers of blocks */
     int *pivot_band, *pivot_border;
     double *inverse; /* null, or the inverse of the band, FU_INVERSE_ROWS a column, if `inverted` */
     int inverted;
@@ -149,8 +151,9 @@ double *fu_factor_of(const fu_system *system, int chain);
 int fu_pack(const fu_system *system, fu_span rows, int backwards, double *L);
 void fu_system_clear_border(fu_system *system);
 fu_span fu_common(fu_span one, fu_span other);
-int fu_strip_of(const fu_system *system, int k, int chain);
-int fu_matrix_blocks(const fu_system *system, int strip, const double *x, fu_matrix_block *blocks);
+int fu_strip_of(fu_system *system, int k, int chain);
+void fu_find_significant(const fu_system *system, int strip, const double *x, fu_span rows[FU_HALVES]);
+int fu_list_blocks(const fu_system *system, int strip, const fu_span rows[FU_HALVES], fu_matrix_block *blocks);
 void fu_system_release_border(fu_system *system);
 int fu_system_factor(fu_system *system, const fu_lapack *lapack);
 int fu_system_factor_band(fu_system *system, const fu_lapack *lapack);
