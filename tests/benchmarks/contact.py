@@ -23,11 +23,12 @@ from pathlib import Path
 from time import process_time
 
 import numpy as np
-from funicular import Circle, Material, Plane, Scene, Sphere
+from funicular import Circle, Material, Plane, Scene
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parents[1] / "contact"))
 
+from many_parts import bodies_and_spheres
 from table import arguments, few, show
 from test_contact import LIFTED, LIGHT, L, R, capstan, end_of_mooring, heaviest, mooring
 
@@ -75,18 +76,6 @@ def cost() -> list[dict[str, object]]:
     return found
 
 
-def many_bodies(pairs: bool) -> Scene:
-    """Return 100 bodies in free flight, in contact pairs with each of 100 distant spheres."""
-    scene = Scene()
-    for k in range(100):
-        scene.rigid_body(f"body{k}", mass=1.0, inertia=(1e-3,) * 3, position=(0.5 * k, 100 + 0.3 * (k % 7), 0.1 * k),
-                         velocity=(0.3, 1, 0))
-        scene.surface(f"sphere{k}", Sphere(radius=0.2, at=(0.5 * k, 0, 0)))
-    if pairs:
-        scene.contact("all", "all", stiffness=1e4, radius=0.05)
-    return scene
-
-
 def many_cables(pairs: bool) -> Scene:
     """Return 100 pairs of cables 5 m apart, with a crossing each."""
     scene = Scene()
@@ -116,7 +105,8 @@ def seconds_of(scene: Scene, duration: float) -> tuple[float, float]:
 def far() -> list[dict[str, object]]:
     """Return the cost of distant pairs."""
     found = []
-    for name, make in few((("10,000 contacts", many_bodies), ("100 crossings", many_cables))):
+    for name, make in few((("10,000 contacts", lambda pairs: bodies_and_spheres(100, pairs)),
+                            ("100 crossings", many_cables))):
         steps, added = [], []
         for pairs in (False, True):
             begin = process_time()
