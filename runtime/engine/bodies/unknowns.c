@@ -173,23 +173,20 @@ void fu_add_element_matrix(const fu_model *model, int first, int n, const double
     }
 }
 
-/* Returns whether n unknowns of the border from `first` on are in one front; those of a body that turns alone are not.
- */
-static int in_one_front(const fu_fronts *fronts, int first, int n)
+/* Returns the number of n consecutive unknowns of the border that are in the front of the first one; those of a body
+ * that turns alone are in two. */
+static int in_front(const fu_fronts *fronts, int first, int n)
 {
-    return fronts->n == 1 || fronts->front[first] == fronts->front[first + n - 1];
+    if (fronts->n == 1) return n;
+    int same = 1;
+    while (same < n && fronts->front[first + same] == fronts->front[first]) ++same;
+    return same;
 }
 
-/* Adds T' values T of a block over contiguous unknowns of the border. */
-static void add_together(fu_system *s, int row, int rows, int column, int columns, double factor,
-                         const double *restrict values, int by_row, int by_column)
+/* Adds T' values T of a block over contiguous unknowns of one front and of one front. */
+static void add_in_fronts(fu_system *s, int row, int rows, int column, int columns, double factor,
+                          const double *restrict values, int by_row, int by_column)
 {
-    if (!in_one_front(s->fronts, row, rows) || !in_one_front(s->fronts, column, columns)) {
-        for (int j = 0; j < columns; ++j)
-            for (int i = 0; i < rows; ++i)
-                add(s, s->n + row + i, s->n + column + j, factor * values[i * by_row + j * by_column]);
-        return;
-    }
     int stride;
     const int at = fu_fronts_block(s->fronts, row, column, &stride), has_place = at < s->fronts->size;
     double *restrict to = s->D + at;
@@ -197,6 +194,19 @@ static void add_together(fu_system *s, int row, int rows, int column, int column
         for (int i = 0; has_place && i < rows; ++i) to[i] += factor * values[i * by_row];
         for (int i = 0; !has_place && i < rows; ++i) to[0] += fabs(factor * values[i * by_row]);
         to += has_place ? stride : 0;
+    }
+}
+
+/* Adds T' values T of a block over contiguous unknowns of the border. */
+static void add_together(fu_system *s, int row, int rows, int column, int columns, double factor,
+                         const double *restrict values, int by_row, int by_column)
+{
+    for (int j = 0, n; j < columns; j += n) {
+        n = in_front(s->fronts, column + j, columns - j);
+        for (int i = 0, m; i < rows; i += m) {
+            m = in_front(s->fronts, row + i, rows - i);
+            add_in_fronts(s, row + i, m, column + j, n, factor, values + i * by_row + j * by_column, by_row, by_column);
+        }
     }
 }
 
