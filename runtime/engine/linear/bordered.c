@@ -285,8 +285,8 @@ FU_INLINE void take(const fu_system *s, const double *y, double *x)
         const fu_matrix_block *columns = s->columns + FU_HALVES * s->chain_start[c];
         for (const fu_matrix_block *p = columns; p < columns + s->n_columns[c]; ++p) {
             const double *column = s->X + s->strips[p->strip].x, scale = y[p->k];
-            const int end = p->rows.end;
-            int i = p->rows.first;
+            const long end = p->rows.end;
+            long i = p->rows.first;
             for (; i + FU_SIMD_WIDTH <= end; i += FU_SIMD_WIDTH)
                 *(fu_simd_block *)(x + i) -= *(const fu_simd_block *)(column + i) * scale;
             for (; i < end; ++i) x[i] -= scale * column[i];

@@ -6,11 +6,11 @@
 #include "base/simd.h"
 
 /* Subtracts from n numbers the sum of four columns times a factor each. */
-FU_INLINE void subtract_four(int n, const double *const column[4], const double factor[4], double *restrict to)
+FU_INLINE void subtract_four(long n, const double *const column[4], const double factor[4], double *restrict to)
 {
     const double *a = column[0], *b = column[1], *c = column[2], *d = column[3];
     const double w = factor[0], x = factor[1], y = factor[2], z = factor[3];
-    int i = 0;
+    long i = 0;
     for (; i + FU_SIMD_WIDTH <= n; i += FU_SIMD_WIDTH)
         *(fu_simd_block *)(to + i) -= *(const fu_simd_block *)(a + i) * w + *(const fu_simd_block *)(b + i) * x +
                                       *(const fu_simd_block *)(c + i) * y + *(const fu_simd_block *)(d + i) * z;
@@ -18,9 +18,9 @@ FU_INLINE void subtract_four(int n, const double *const column[4], const double 
 }
 
 /* Subtracts from n numbers a column times a factor. */
-FU_INLINE void subtract_one(int n, const double *column, double factor, double *restrict to)
+FU_INLINE void subtract_one(long n, const double *column, double factor, double *restrict to)
 {
-    int i = 0;
+    long i = 0;
     for (; i + FU_SIMD_WIDTH <= n; i += FU_SIMD_WIDTH)
         *(fu_simd_block *)(to + i) -= *(const fu_simd_block *)(column + i) * factor;
     for (; i < n; ++i) to[i] -= column[i] * factor;

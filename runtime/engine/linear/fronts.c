@@ -19,13 +19,13 @@
 #define SUBTRACT subtract_one
 
 /* Subtracts from twice n numbers the sum of four columns, at a distance of `stride`, times factors of each. */
-FU_INLINE void subtract_four_from_two(int n, const double *column, int stride, const double f[4], const double g[4],
+FU_INLINE void subtract_four_from_two(long n, const double *column, int stride, const double f[4], const double g[4],
                                       double *restrict to, double *restrict other)
 {
     const double *a = column, *b = a + stride, *c = b + stride, *d = c + stride;
     const double w = f[0], x = f[1], y = f[2], z = f[3];
     const double p = g[0], q = g[1], r = g[2], s = g[3];
-    int i = 0;
+    long i = 0;
     for (; i + FU_SIMD_WIDTH <= n; i += FU_SIMD_WIDTH) {
         const fu_simd_block u = *(const fu_simd_block *)(a + i), v = *(const fu_simd_block *)(b + i);
         const fu_simd_block m = *(const fu_simd_block *)(c + i), l = *(const fu_simd_block *)(d + i);
