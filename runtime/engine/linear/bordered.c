@@ -137,6 +137,7 @@ static int moves(fu_system *s, int strip, int chain)
     of->at += shift;
     of->x += shift;
     of->chain = chain;
+    s->is_listed = 0;
     return 1;
 }
 
@@ -206,21 +207,28 @@ static void solve_column(fu_system *s, const fu_lapack *lapack, int strip)
     fu_find_significant(s, strip, x, rows);
 }
 
-/* Lists the strips with entries by chain, in each by unknown. */
+/* Returns whether a strip has entries or may come to have them. */
+static int is_used(const fu_system *s, int strip)
+{
+    return s->strips[strip].k >= s->constant || has_entries(s, strip);
+}
+
+/* Lists the strips by chain, in each by unknown, without constant ones that are empty. */
 static void list_strips(fu_system *s)
 {
     int *start = s->chain_start;
     for (int c = 0; c <= s->n_chains; ++c) start[c] = 0;
-    for (int i = 0; i < s->n_strips; ++i) start[s->strips[i].chain] += has_entries(s, i);
+    for (int i = 0; i < s->n_strips; ++i) start[s->strips[i].chain] += is_used(s, i);
     for (int c = 1; c <= s->n_chains; ++c) start[c] += start[c - 1];
     for (int i = s->n_strips - 1; i >= 0; --i)
-        if (has_entries(s, i)) s->on_chain[--start[s->strips[i].chain]] = i;
+        if (is_used(s, i)) s->on_chain[--start[s->strips[i].chain]] = i;
+    s->is_listed = 1;
 }
 
 /* Computes the columns of X that are not constant, and lists the blocks of X and C. */
 static void couple(fu_system *s, const fu_lapack *lapack)
 {
-    list_strips(s);
+    if (!s->is_listed) list_strips(s);
     for (int c = 0; c < s->n_chains; ++c) {
         const int start = FU_HALVES * s->chain_start[c];
         fu_matrix_block *columns = s->columns + start, *rows = s->rows + start;
@@ -239,12 +247,14 @@ void fu_system_keep_border(fu_system *s, const fu_lapack *lapack, int columns)
 {
     couple(s, lapack);
     s->constant = columns;
+    s->is_listed = 0;
 }
 
 /* Keeps nothing of the border constant. */
 void fu_system_release_border(fu_system *s)
 {
     s->constant = 0;
+    s->is_listed = 0;
 }
 
 /* Computes and factors the Schur complement of the factored band, D - C K^-1 B, in place of D or beside it; returns 0,

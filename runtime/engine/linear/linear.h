@@ -87,7 +87,8 @@ typedef struct {
     int n_strips, n_strip_rows;  /* n_strip_rows: the numbers of B, or of C */
     fu_strip *strips;            /* by unknown of the border, those that may move last */
     const int *first_strip;      /* m + 1: of each unknown of the border, and n_strips */
-    int *chain_start, *on_chain; /* n_chains + 1: first place in on_chain of the strips of each chain with entries */
+    int *chain_start, *on_chain; /* n_chains + 1: first place in on_chain of the strips of each chain */
+    int is_listed;               /* they are those of the present strips */
     const int *chains;           /* n_chains + 1: the first row of each, and n */
     const int *half;             /* of each row of the band: 2 chain, plus 1 from the middle on */
     double *K;                   /* LAPACK's band storage, FU_BAND_ROWS x n; shared by all systems of a run */
