@@ -47,6 +47,7 @@ PLACES = {
         "model/part_states.py", "results/section_forces/cable_loads.py"],
     "what the integrator \"energy\" cannot do beside couplings without step equations": [
         "solve/motion/integrator_choice.py"],
+    "joints with an end on a slide, whose constraints are not linear": ["solve/motion/linear_model.py"],
 }
 
 
@@ -74,6 +75,7 @@ SCENE_PLACES = {
         "choice/motion.py", "parts/locations.py", "results/animation/clips.py", "results/animation/frames.py",
         "results/animation/ropes.py", "results/error_estimate.py", "results/pictures.py",
         "results/section_forces/ropes.py"],
+    "ropes, which the linear model does not have": ["solve/motion/linear_model.py"],
     "parameters that are adjusted": [
         "solve/adjustment/adjustment.py", "solve/adjustment/length_changes.py",
         "solve/adjustment/parameter_changes.py", "solve/adjustment/parameter_search.py",

@@ -40,7 +40,6 @@ cdef extern from * nogil:
     #include "events/events.h"
     #include "events/list.h"
     #include "events/slack_cables.h"
-    #include "integrators/linear_model.h"
     #include "integrators/list.h"
     #include "run/run.h"
     """
