@@ -25,6 +25,7 @@
 #include "events/events.h"
 #include "integrators/carried_residual.h"
 #include "integrators/extrapolation.h"
+#include "integrators/generalised_alpha.h"
 
 #include <math.h>
 #include <string.h>
@@ -32,22 +33,6 @@
 /* of the usual step: a shorter one keeps a_n, with an error below that of the usual step */
 #define SHORT_STEP_SHARE 0.1
 #define MEAN_JUMP_DISTANCE 0.25 /* of a step: mean distance of a discontinuity from its middle */
-
-typedef struct {
-    double alpha_m, alpha_f, beta, gamma;
-} parameters;
-_Static_assert(sizeof(parameters) == 4 * sizeof(double), "parameters are an array of doubles");
-
-static const parameters *scheme_of(const fu_run *run)
-{
-    return (const parameters *)run->parameters;
-}
-
-static long n_parameters(const double *given)
-{
-    (void)given;
-    return FU_DOUBLES(1, parameters);
-}
 
 /* The integrator's work space. */
 typedef struct {
@@ -77,11 +62,6 @@ static workspace space(const fu_run *run)
     return w;
 }
 
-static double sigma(const parameters *g, double h)
-{
-    return g->beta * h * h * (1.0 - g->alpha_f) / (1.0 - g->alpha_m);
-}
-
 /* Kinematics that threads share. */
 typedef struct {
     fu_run *run;
@@ -90,7 +70,7 @@ typedef struct {
 
 FU_INLINE void take_steps(const fu_run *run, double h, int first, int end)
 {
-    const parameters *g = scheme_of(run);
+    const fu_alpha_scheme *g = fu_alpha_scheme_of(run);
     const fu_state *now = &run->now, *next = &run->next;
     const double over = 1.0 / (1.0 - g->alpha_f), slope = over * (1.0 - g->alpha_m);
     const double slope_now = over * g->alpha_m, share_before = over * g->alpha_f;
@@ -135,8 +115,8 @@ static void kinematics(fu_run *run, double h)
 /* Returns the equations at the end of a step. */
 static fu_equations equations(const fu_run *run, double h)
 {
-    const parameters *g = scheme_of(run);
-    return (fu_equations){&run->now, &run->next, 0, run->psi, h, {1.0, g->gamma / (g->beta * h), sigma(g, h)}};
+    const fu_alpha_scheme *g = fu_alpha_scheme_of(run);
+    return (fu_equations){&run->now, &run->next, 0, run->psi, h, {1.0, g->gamma / (g->beta * h), fu_alpha_sigma(g, h)}};
 }
 
 static void matrix(fu_run *run, double h)
@@ -148,9 +128,9 @@ static void matrix(fu_run *run, double h)
 /* Applies the solution in run->rhs to `next`; returns its size as a length. */
 static double apply(fu_run *run, double h)
 {
-    const double per_psi = 1.0 / (scheme_of(run)->beta * h * h), size = fu_spread_size(run);
+    const double per_psi = 1.0 / (fu_alpha_scheme_of(run)->beta * h * h), size = fu_spread_size(run);
     fu_add_times(run->model->threads, run->model->n_dof, per_psi, run->work, run->next.a);
-    fu_add_solution(run, 1.0, sigma(scheme_of(run), h));
+    fu_add_solution(run, 1.0, fu_alpha_sigma(fu_alpha_scheme_of(run), h));
     fu_choose_path_segments(run);
     return size;
 }
@@ -158,7 +138,7 @@ static double apply(fu_run *run, double h)
 /* Returns the factor of a_n in a_n+1 for psi = h v. */
 static double of_velocities(const fu_run *run)
 {
-    return 1.0 - 0.5 / scheme_of(run)->beta;
+    return 1.0 - 0.5 / fu_alpha_scheme_of(run)->beta;
 }
 
 static void predict(fu_run *run, double h)
@@ -188,7 +168,7 @@ static void internal_residual(fu_run *run, double h)
 static void note_rest(fu_run *run, double h)
 {
     const workspace w = space(run);
-    fu_carried_residual_note(&w.carried, run, sigma(scheme_of(run), h));
+    fu_carried_residual_note(&w.carried, run, fu_alpha_sigma(fu_alpha_scheme_of(run), h));
 }
 
 static const fu_newton newton = {predict, kinematics, residual, matrix, apply, 12, 0, note_rest, internal_residual};
@@ -208,7 +188,7 @@ static int step(fu_run *run, double h)
  * whole. */
 static double error(fu_run *run, double h)
 {
-    const parameters *g = scheme_of(run);
+    const fu_alpha_scheme *g = fu_alpha_scheme_of(run);
     const double smooth = fabs(g->beta + 0.5 * (g->alpha_m - g->alpha_f) - 1.0 / 6.0);
     const double factor = h * h * (fu_count_changes(run) ? MEAN_JUMP_DISTANCE : smooth);
     fu_set_difference(run->model->threads, run->model->n_dof, factor, run->next.acceleration, run->now.acceleration,
@@ -246,7 +226,7 @@ static int start(fu_run *run)
 }
 
 const fu_integrator fu_genalpha = {.name = "genalpha",
-                                   .n_parameters = n_parameters,
+                                   .n_parameters = fu_alpha_parameters,
                                    .n_scratch = n_scratch,
                                    .start = start,
                                    .step = step,

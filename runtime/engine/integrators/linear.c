@@ -11,6 +11,7 @@
 #include "couplings/common/couplings.h"
 #include "equations/equations.h"
 #include "equations/step_control.h"
+#include "integrators/generalised_alpha.h"
 #include "integrators/linear_state.h"
 
 #include <math.h>
@@ -23,21 +24,6 @@
 #define ROUNDING_FACTOR 100.0       /* times the rounding of positions: a change that is not rounding */
 #define ROWS_PER_ESTIMATE 8         /* an estimate of the model's error costs as much as several steps */
 #define SHORT_STEP_SHARE 0.1        /* of the usual step: a shorter one keeps its initial a, as in genalpha.c */
-
-typedef struct {
-    double alpha_m, alpha_f, beta, gamma;
-} parameters;
-
-static const parameters *scheme_of(const fu_run *run)
-{
-    return (const parameters *)run->parameters;
-}
-
-static long n_parameters(const double *given)
-{
-    (void)given;
-    return FU_DOUBLES(1, parameters);
-}
 
 static long n_scratch(const fu_run *run)
 {
@@ -53,16 +39,16 @@ static void linear_residual(fu_run *run, const fu_linear_space *w)
     fu_sparse_add_times(&run->linear->joints, 1.0, w->next.y, w->linear);
 }
 
-/* Weights of the matrices of a step, times the square of the step that psi has for a change of a. */
+/* Weights of the matrices of a step; the change of the coordinates for a residual, and that of a for the former. */
 typedef struct {
-    double of[FU_MATRICES], psi, rate, a;
+    double of[FU_MATRICES], psi, a;
 } step_weights;
 
 static step_weights weights_of(const fu_run *run, double h)
 {
-    const parameters *g = scheme_of(run);
-    const double sigma = g->beta * h * h * (1.0 - g->alpha_f) / (1.0 - g->alpha_m), rate = g->gamma / (g->beta * h);
-    return (step_weights){{1.0, sigma * rate, sigma}, sigma, rate, 1.0 / (g->beta * h * h)};
+    const fu_alpha_scheme *g = fu_alpha_scheme_of(run);
+    const double sigma = fu_alpha_sigma(g, h), rate = g->gamma / (g->beta * h);
+    return (step_weights){{1.0, sigma * rate, sigma}, sigma, 1.0 / (g->beta * h * h)};
 }
 
 /* x[i] = a y[i] + b z[i] + c w[i] + d v[i] */
@@ -83,7 +69,7 @@ FU_SIMD_FUNCTION(combine, combine_all, (int n, const double *factors, const doub
 /* Computes the coordinates at the end of a step from their a. */
 static void take_step(const fu_run *run, const fu_linear_space *w, double h)
 {
-    const parameters *g = scheme_of(run);
+    const fu_alpha_scheme *g = fu_alpha_scheme_of(run);
     const fu_linear_coordinates *now = &w->now, *next = &w->next;
     const double over = 1.0 / (1.0 - g->alpha_f);
     const double of_y[] = {1.0, h, h * h * (0.5 - g->beta), h * h * g->beta};
@@ -214,7 +200,7 @@ static int step(fu_run *run, double h)
 /* Returns the local error of positions, m, as genalpha.c does. */
 static double error(fu_run *run, double h)
 {
-    const parameters *g = scheme_of(run);
+    const fu_alpha_scheme *g = fu_alpha_scheme_of(run);
     const fu_linear_space w = fu_linear_space_of(run);
     const double factor = h * h * fabs(g->beta + 0.5 * (g->alpha_m - g->alpha_f) - 1.0 / 6.0);
     for (int i = 0; i < run->model->n_dof; ++i)
@@ -337,7 +323,7 @@ static int start(fu_run *run)
 }
 
 const fu_integrator fu_linear = {.name = "linear",
-                                 .n_parameters = n_parameters,
+                                 .n_parameters = fu_alpha_parameters,
                                  .n_scratch = n_scratch,
                                  .start = start,
                                  .step = step,
