@@ -117,14 +117,12 @@ static gap_motion look_at(const fu_model *model, const fu_point_force *between, 
 {
     gap_motion l = {.distance = 0.0};
     for (int e = 0; e < 2; ++e) {
-        fu_attachment_state at;
-        fu_attachment_at(model, &between->attachments[e], state, 0.0, FU_POINT, &at);
+        double p[3], v[3], a[3];
+        fu_point_at(model, &between->attachments[e], state, p, v, a);
         for (int d = 0; d < between->dim; ++d) {
-            double acceleration = at.bias[d];
-            for (int i = 0; i < at.n; ++i) acceleration += at.P[d * at.n + i] * state->acceleration[at.at[i]];
-            l.gap[d] += e ? at.p[d] : -at.p[d];
-            l.rate[d] += e ? at.v[d] : -at.v[d];
-            l.acceleration[d] += e ? acceleration : -acceleration;
+            l.gap[d] += e ? p[d] : -p[d];
+            l.rate[d] += e ? v[d] : -v[d];
+            l.acceleration[d] += e ? a[d] : -a[d];
         }
     }
     l.distance = norm(between->dim, l.gap);

@@ -50,6 +50,14 @@ static inline void fu_turn_in_space(int dim, const double *turn, double out[3])
 int fu_attachment_coordinates(const fu_model *model, const fu_attachment *on, const fu_state *state, int *at);
 void fu_attachment_at(const fu_model *model, const fu_attachment *on, const fu_state *state, double s_rate, int what,
                       fu_attachment_state *out);
+/* couplings/common/points.c */
+/* Computes the place of an attachment's point and, unless null, its velocity v and, if that is not, its acceleration
+ * a. */
+void fu_point_at(const fu_model *model, const fu_attachment *on, const fu_state *state, double p[3], double *v,
+                 double *a);
+/* Adds `factor` times the generalised force of a force on the point to f. */
+void fu_add_force_at(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *force,
+                     double factor, double *f);
 /* Computes, of an attachment on a body, P over a step: P psi is the displacement of its point. Points of cables and
  * nodes keep P. */
 void fu_discrete_point(const fu_model *model, const fu_attachment *on, const fu_state *now, const fu_state *next,

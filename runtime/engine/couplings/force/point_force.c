@@ -113,13 +113,8 @@ static void add_forces(const fu_model *model, const fu_point_force *between, con
     for (int e = 0; e < 2; ++e) {
         const fu_attachment *on = &between->attachments[e];
         const double sign = e ? 1.0 : -1.0;
-        fu_attachment_state at;
-        if (next) {
-            fu_add_point_over_step(model, on, state, next, force, sign, f);
-            continue;
-        }
-        fu_attachment_at(model, on, state, 0.0, FU_PLACE, &at);
-        fu_add_wrench(between->dim, &at, force, 0, sign, f);
+        if (next) fu_add_point_over_step(model, on, state, next, force, sign, f);
+        else fu_add_force_at(model, on, state, force, sign, f);
     }
 }
 

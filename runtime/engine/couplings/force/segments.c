@@ -35,12 +35,11 @@ int fu_segment_at_distance(const fu_point_force *between, double distance)
 
 void fu_gap(const fu_model *model, const fu_point_force *between, const fu_state *state, double gap[3], double *rate)
 {
-    fu_attachment_state at[2];
-    for (int e = 0; e < 2; ++e)
-        fu_attachment_at(model, &between->attachments[e], state, 0.0, rate ? FU_POINT : FU_PLACE, &at[e]);
+    double p[2][3], v[2][3];
+    for (int e = 0; e < 2; ++e) fu_point_at(model, &between->attachments[e], state, p[e], rate ? v[e] : 0, 0);
     for (int d = 0; d < 3; ++d) {
-        gap[d] = at[1].p[d] - at[0].p[d];
-        if (rate) rate[d] = at[1].v[d] - at[0].v[d];
+        gap[d] = p[1][d] - p[0][d];
+        if (rate) rate[d] = v[1][d] - v[0][d];
     }
 }
 
