@@ -265,7 +265,7 @@ cdef extern from * nogil:
         double inertia, rate, stiffness
     ctypedef struct fu_sparse:
         int rows
-        const int *start, *column
+        const int *row, *start, *column
         const double *value
     int FU_MATRICES
     int FU_STEP_FACTORS

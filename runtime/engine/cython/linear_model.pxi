@@ -33,9 +33,17 @@ cdef class LinearModels(Statics):
 
     cdef _sparse(self, fu_sparse *to, matrix):
         """Take a sparse matrix (rows, columns)."""
-        given = matrix.tocsr()
-        to.rows, to.start, to.column = given.shape[0], self._ints(given.indptr), self._ints(given.indices)
-        to.value = self._doubles(given.data)
+        self._rows_of(to, matrix, np.arange(matrix.shape[0]))
+
+    cdef _filled_rows(self, fu_sparse *to, matrix):
+        """Take the rows of a sparse matrix that have entries."""
+        self._rows_of(to, matrix, np.flatnonzero(np.diff(matrix.indptr)))
+
+    cdef _rows_of(self, fu_sparse *to, matrix, rows):
+        """Take these rows of a sparse matrix."""
+        given = matrix[rows]
+        to.rows, to.row = len(rows), self._ints(rows)
+        to.start, to.column, to.value = self._ints(given.indptr), self._ints(given.indices), self._doubles(given.data)
 
     def take_linear_model(self, model):
         """Take a linear model about the start for a run with the integrator "linear"; call it before `start`."""
@@ -47,9 +55,9 @@ cdef class LinearModels(Statics):
         self._sparse(&m.closing, model.closing)
         self._sparse(&m.held, model.held)
         self._sparse(&m.read, model.read)
-        self._sparse(&m.joints, model.joints)
+        self._filled_rows(&m.joints, model.joints)
         for k in range(FU_MATRICES):
-            self._sparse(&m.exact[k], model.exact[k])
+            self._filled_rows(&m.exact[k], model.exact[k])
             m.matrices[k] = self._doubles(model.bands[k])
             m.cables[k] = self._zeros(<double>FU_HALF_BAND_ROWS(self.model.n_dof) * m.stride)
         m.weight, m.force = self._doubles(model.weight), self._zeros(self.model.n_dof)

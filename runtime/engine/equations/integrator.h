@@ -36,6 +36,7 @@ typedef struct {
      * elastic energy; returns 0 if there is one solution. Null: eq 38, and the energy of the configuration. */
     int (*row)(fu_run *run, double *acceleration, double *reaction, double *elastic);
     int keeps_scratch;       /* checkpoints hold its work space, which is real numbers alone */
+    int defers_all;          /* also fixed steps go over deferred events: they have hardly a larger error */
     int keeps_energy;        /* velocities are unchanged by a restart: their projection would cost energy */
     int coasts;              /* a very short step leaves no data to continue with: no restart after one */
     int has_matrix;          /* run->newton has the mass and the stiffness of a step, times its square */

@@ -245,4 +245,5 @@ const fu_integrator fu_energy = {.name = "energy",
                                  .error = error,
                                  .account = account,
                                  .keeps_energy = 1,
+                                 .defers_all = 1,
                                  .newton = &newton};

@@ -20,8 +20,9 @@
 #define MOST_ITERATIONS 20
 #define RESIDUAL_UNDERESTIMATE 10.0 /* largest ratio of the contraction of changes to that of the residual */
 #define MAX_CONTRACTION 0.9         /* largest contraction for the estimate of the remaining error */
-#define LEFT_SHARE 1e-2             /* of the permitted error of a step: its change by an iteration that is left out */
+#define LEFT_SHARE 0.5              /* of the permitted error of a step: its change by an iteration that is left out */
 #define ROUNDING_FACTOR 100.0       /* times the rounding of positions: a change that is not rounding */
+#define STEPS_PER_ESTIMATE 8        /* of a fixed size: an estimate of the error costs as much as a solution */
 #define ROWS_PER_ESTIMATE 8         /* an estimate of the model's error costs as much as several steps */
 #define SHORT_STEP_SHARE 0.1        /* of the usual step: a shorter one keeps its initial a, as in genalpha.c */
 
@@ -197,9 +198,10 @@ static int step(fu_run *run, double h)
     return iterate(run, &w, h);
 }
 
-/* Returns the local error of positions, m, as genalpha.c does. */
+/* Returns the local error of positions, m, as genalpha.c does; in steps of a fixed size now and then. */
 static double error(fu_run *run, double h)
 {
+    if (run->fixed_step > 0.0 && run->statistics.steps % STEPS_PER_ESTIMATE) return run->last_error;
     const fu_alpha_scheme *g = fu_alpha_scheme_of(run);
     const fu_linear_space w = fu_linear_space_of(run);
     const double factor = h * h * fabs(g->beta + 0.5 * (g->alpha_m - g->alpha_f) - 1.0 / 6.0);
@@ -332,4 +334,5 @@ const fu_integrator fu_linear = {.name = "linear",
                                  .account = account,
                                  .row = row,
                                  .keeps_scratch = 1,
-                                 .coasts = 1};
+                                 .coasts = 1,
+                                 .defers_all = 1};

@@ -9,7 +9,7 @@ void fu_sparse_add_times(const fu_sparse *A, double factor, const double *x, dou
     for (int i = 0; i < A->rows; ++i) {
         double sum = 0.0;
         for (int k = A->start[i]; k < A->start[i + 1]; ++k) sum += A->value[k] * x[A->column[k]];
-        y[i] += factor * sum;
+        y[A->row[i]] += factor * sum;
     }
 }
 
@@ -65,20 +65,38 @@ void fu_linear_model_expand(const fu_linear_model *linear, int n_dof, const doub
     }
 }
 
+static void add_product(const fu_linear_model *linear, int n, int which, const double *x, double *y)
+{
+    fu_add_half_bands_times(n, linear->stride, 1, &linear->cables[which], &x, y);
+}
+
+/* Computes the forces of cables one after the other, with the totals. */
+static void forces_with_totals(const fu_run *run, const fu_small_motion *motion, double *force, fu_cable_totals *totals)
+{
+    const fu_linear_model *linear = run->linear;
+    const int n = fu_rope_dofs(run->model).first;
+    const size_t size = sizeof(double) * (size_t)run->model->n_dof;
+    memset(force, 0, size);
+    add_product(linear, n, FU_STIFFNESS, motion->displacement, force);
+    totals->elastic =
+        linear->elastic + fu_dot(n, motion->displacement, linear->force) + 0.5 * fu_dot(n, motion->displacement, force);
+    fu_add_times(NULL, n, 1.0, linear->force, force);
+    add_product(linear, n, FU_DAMPING, motion->velocity, force);
+    memcpy(totals->without_inertia, force, size);
+    add_product(linear, n, FU_MASS, motion->acceleration, force);
+}
+
 void fu_linear_model_cable_forces(const fu_run *run, const fu_small_motion *motion, double *force,
                                   fu_cable_totals *totals)
 {
     const fu_linear_model *linear = run->linear;
-    const int n = fu_rope_dofs(run->model).first;
-    memset(force, 0, sizeof(double) * (size_t)run->model->n_dof);
-    fu_add_half_band_times(n, linear->stride, linear->cables[FU_STIFFNESS], motion->displacement, force);
-    if (totals)
-        totals->elastic = linear->elastic + fu_dot(n, motion->displacement, linear->force) +
-                          0.5 * fu_dot(n, motion->displacement, force);
-    fu_add_times(NULL, n, 1.0, linear->force, force);
-    fu_add_half_band_times(n, linear->stride, linear->cables[FU_DAMPING], motion->velocity, force);
-    if (totals) memcpy(totals->without_inertia, force, sizeof(double) * (size_t)run->model->n_dof);
-    fu_add_half_band_times(n, linear->stride, linear->cables[FU_MASS], motion->acceleration, force);
+    const double *const of[FU_MATRICES] = {motion->acceleration, motion->velocity, motion->displacement};
+    if (totals) {
+        forces_with_totals(run, motion, force, totals);
+        return;
+    }
+    memcpy(force, linear->force, sizeof(double) * (size_t)run->model->n_dof);
+    fu_add_half_bands_times(fu_rope_dofs(run->model).first, linear->stride, FU_MATRICES, linear->cables, of, force);
 }
 
 /* Returns the power of the damping of cables, W. */
@@ -86,7 +104,7 @@ double fu_linear_model_dissipation(const fu_run *run, const double *velocity, do
 {
     const int n = fu_rope_dofs(run->model).first;
     memset(force, 0, sizeof(double) * (size_t)(FU_HALF_BAND_ROWS(n) + run->linear->stride));
-    fu_add_half_band_times(n, run->linear->stride, run->linear->cables[FU_DAMPING], velocity, force);
+    add_product(run->linear, n, FU_DAMPING, velocity, force);
     return fu_dot(n, velocity, force);
 }
 

@@ -9,10 +9,11 @@
 #include "base/common.h"
 #include "equations/run.h"
 
-/* A sparse matrix: row i has the entries start[i] ... start[i + 1] - 1. */
+/* Rows of a sparse matrix, those without entries left out where they are many: row row[i] has the entries start[i] ...
+ * start[i + 1] - 1. */
 typedef struct {
     int rows;
-    const int *start, *column;
+    const int *row, *start, *column;
     const double *value;
 } fu_sparse;
 
@@ -27,7 +28,7 @@ typedef struct {
 enum { FU_STEP_FACTORS = 4 }; /* kept: steps of a few sizes alternate between output times */
 
 struct fu_linear_model {
-    int n, width, stride; /* coordinates; half bandwidth of their matrices; fu_add_half_band_times of cables */
+    int n, width, stride; /* coordinates; half bandwidth of their matrices; fu_add_half_bands_times of cables */
     const int *dof;       /* n: the dof that equals each coordinate; -1 for none */
     const int *mixed;     /* the dofs that are combinations of coordinates, row by row */
     fu_sparse combinations;

@@ -206,29 +206,47 @@ void fu_band_solve(int n, int width, const double *A, int first, double *x)
     fu_band_backward(n, width, A, x);
 }
 
-FU_INLINE void add_half_band_times(int n, int stride, const double *A, const double *x, double *y)
+/* Adds the products of one group of rows of the matrices. */
+FU_INLINE void add_half_group_times(int j, int stride, int count, double *const *A, const double *const *x, double *y)
 {
-    for (int j = 0; j < n; j += FU_BAND_GROUP) {
-        const group g = group_at(stride - 1, (double *)A, j);
-        const double *f = x + j, diagonal[] = {g.a[0], g.b[1], g.c[2], g.d[3]};
-        fu_simd_block sums[FU_BAND_GROUP] = {{0.0}};
-        for (int k = 0; k < stride; k += FU_SIMD_WIDTH) {
+    fu_simd_block sums[FU_BAND_GROUP] = {{0.0}};
+    double diagonal[FU_BAND_GROUP] = {0.0};
+    for (int k = 0; k < stride; k += FU_SIMD_WIDTH) {
+        fu_simd_block sum = *(fu_simd_block *)(y + j + k);
+        for (int m = 0; m < count; ++m) {
+            const group g = group_at(stride - 1, A[m], j);
+            const double *f = x[m] + j;
             const fu_simd_block of = *(const fu_simd_block *)(f + k), a = *(const fu_simd_block *)(g.a + k),
                                 b = *(const fu_simd_block *)(g.b + k), c = *(const fu_simd_block *)(g.c + k),
                                 d = *(const fu_simd_block *)(g.d + k);
-            *(fu_simd_block *)(y + j + k) += a * f[0] + b * f[1] + c * f[2] + d * f[3];
+            sum += a * f[0] + b * f[1] + c * f[2] + d * f[3];
             sums[0] += a * of;
             sums[1] += b * of;
             sums[2] += c * of;
             sums[3] += d * of;
         }
-        for (int i = 0; i < FU_BAND_GROUP; ++i)
-            y[j + i] += (sums[i][0] + sums[i][1]) + (sums[i][2] + sums[i][3]) - diagonal[i] * f[i];
+        *(fu_simd_block *)(y + j + k) = sum;
     }
+    for (int m = 0; m < count; ++m) {
+        const group g = group_at(stride - 1, A[m], j);
+        const double *f = x[m] + j, of[] = {g.a[0], g.b[1], g.c[2], g.d[3]};
+        for (int i = 0; i < FU_BAND_GROUP; ++i) diagonal[i] += of[i] * f[i];
+    }
+    for (int i = 0; i < FU_BAND_GROUP; ++i)
+        y[j + i] += (sums[i][0] + sums[i][1]) + (sums[i][2] + sums[i][3]) - diagonal[i];
 }
 
-/* Adds A x to y, of a symmetric matrix of n rows, its upper half in rows of `stride` numbers, a multiple of
- * FU_SIMD_WIDTH, from the diagonal on, of which the last FU_BAND_GROUP - 1 are zero. There are FU_HALF_BAND_ROWS(n)
- * rows and entries of x and y with `stride` more; rows beyond n are zero, entries of x there finite. */
-FU_SIMD_FUNCTION(fu_add_half_band_times, add_half_band_times,
-                 (int n, int stride, const double *A, const double *x, double *y), (n, stride, A, x, y))
+FU_INLINE void add_half_bands_times(int n, int stride, int count, double *const *A, const double *const *x, double *y)
+{
+    for (int j = 0; j < n; j += FU_BAND_GROUP)
+        if (count == 1) add_half_group_times(j, stride, 1, A, x, y);
+        else add_half_group_times(j, stride, 3, A, x, y);
+}
+
+/* Adds the sum of the products A x of 1 or 3 matrices to y. They are symmetric, of n rows, their upper halves in rows
+ * of `stride` numbers, a multiple of FU_SIMD_WIDTH, from the diagonal on, of which the last FU_BAND_GROUP - 1 are zero.
+ * There are FU_HALF_BAND_ROWS(n) rows and entries of x and y with `stride` more; rows beyond n are zero, entries of x
+ * there finite. */
+FU_SIMD_FUNCTION(fu_add_half_bands_times, add_half_bands_times,
+                 (int n, int stride, int count, double *const *A, const double *const *x, double *y),
+                 (n, stride, count, A, x, y))

@@ -61,7 +61,7 @@ static int must_keep_segments(const fu_run *run)
 /* Returns whether couplings must have no deferred event in a step, which ends at one. */
 static int must_keep_forces(const fu_run *run)
 {
-    if (run->integrator->keeps_energy) return 0;
+    if (run->integrator->defers_all) return 0;
     return !is_adaptive(run) || !run->last_event_deferred || !run->integrator->quadrature;
 }
 
