@@ -19,9 +19,10 @@ from ..solve.notes.sensitivity import GROWTH_TEXT
 from .motion import MOTION, samples
 from .remeshing import CableModel, S, remade
 
-RADAU_WORK, IMPLICIT_WORK, STEP_WORK = 7.0, 2.5, 0.7
-"""Work of an iteration of radau and of the other implicit methods, and of a step of these, in evaluations of
-accelerations, measured on pendulums of 4 to 64 elements of each kind: radau has three stages and a complex system."""
+RADAU_WORK, IMPLICIT_WORK, LINEAR_WORK, STEP_WORK = 7.0, 2.5, 1.0, 0.7
+"""Work of an iteration of radau, of the other implicit methods and of the linear model, and of a step of these, in
+evaluations of accelerations, measured on pendulums of 4 to 64 elements of each kind: radau has three stages and a
+complex system; the linear model on taut cables of 8 to 128 elements."""
 
 ROUNDING_TOLERANCE = 1e-12
 """Part of the largest value of a quantity that rounding may change."""
@@ -92,8 +93,10 @@ class Probe(Generic[S]):
         if report["integrator"] == "explicit":
             return float(report["evaluations"])
         iterations = report.get("newton_iterations", 0)
-        return float(RADAU_WORK * iterations if report["integrator"] == "radau" else
-                     IMPLICIT_WORK * iterations + STEP_WORK * report["steps"])
+        if report["integrator"] == "radau":
+            return float(RADAU_WORK * iterations)
+        return float((LINEAR_WORK if report["integrator"] == "linear" else IMPLICIT_WORK) * iterations
+                     + STEP_WORK * report["steps"])
 
 
 class Prober(Generic[S]):

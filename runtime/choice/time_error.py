@@ -4,6 +4,9 @@ Generalised-alpha is the cheapest integrator at loose tolerances, but it estimat
 error is measured as the distance to the automatic choice on a coarse mesh. It depends little on the mesh and is about
 proportional to the tolerance. Two probes of one tolerance share most of it, so that probes can tell meshes apart with
 steps much longer than those of the run.
+
+Where the motion is small the linear model about the start is tried, which takes the same steps: what it leaves out is
+its distance to generalised-alpha.
 """
 
 from __future__ import annotations
@@ -15,10 +18,25 @@ from typing import Any
 import numpy as np
 
 from ..integrators import AUTO
+from ..results.trajectories import largest_change
+from .motion import along
 from .probes import OUTPUT_TIMES, Probe
 
 DAMPING = "genalpha"
 """The integrator that is compared with the automatic choice."""
+
+LINEAR = "linear"
+"""The linear model about the start, in time by the method of `DAMPING`."""
+
+SMALL_MOTION = 0.02
+"""Largest motion of a cable, over its length, for which the linear model is tried: what it leaves out is of second
+order."""
+
+LINEAR_SHARE = 0.25
+"""Largest part of the tolerance for what the linear model leaves out."""
+
+LINEAR_START = 2e4
+"""Elements times steps of a run from which the linear model is tried: its matrices cost as much as so many."""
 
 RETRY_TOL_RATIO = 10.0
 """Ratio of the tolerance of the run to that of a last attempt, where the automatic choice fails."""
@@ -114,9 +132,23 @@ class InTime:
                        work_ratio=self.work_ratio * (least / self.probe_tol) ** DAMPING_WORK_POWER)
 
 
+def moves_little(probe: Probe[Any]) -> bool:
+    """Return whether the cables of a probe, of which there are some, move by little of their lengths."""
+    if probe.run is None or not probe.scene.cables:
+        return False
+    return all(largest_change(along(cable, probe.run[f"{cable.name}.nodal_vectors"])) < SMALL_MOTION * cable.length
+               for cable in probe.scene.cables.values())
+
+
+def is_long(probe: Probe[Any], steps: float) -> bool:
+    """Return whether a run of so many steps is long enough for the matrices of the linear model."""
+    return sum(model.elements for model in probe.models.values()) * steps > LINEAR_START
+
+
 def compared(probe: Callable[[str, float], Probe[Any]], difference: Callable[[Probe[Any], Probe[Any]], float],
              asked: str, tol: float, friction: bool = False) -> InTime:
-    """Return the integrators: generalised-alpha where it agrees with the automatic choice for less work.
+    """Return the integrators: generalised-alpha where it agrees with the automatic choice for less work, the linear
+    model where that agrees with generalised-alpha.
 
     Its tolerance is smaller than that of the run where this is needed. probe: returns the run on a coarse mesh by an
     integrator and its tolerance; difference: of two of them; asked: the integrator of the settings; friction: whether
@@ -146,6 +178,13 @@ def compared(probe: Callable[[str, float], Probe[Any]], difference: Callable[[Pr
     best = found.work * (tried / tol) ** AUTO_WORK_POWER
     probed = (DAMPING, loose, rate) if probing <= AUTO_WORK_GROWTH * found.work else (AUTO, tried, ASSUMED_ERROR)
     spent = probing if probed[0] == DAMPING else found.work
+    if allowed >= MIN_TOL_RATIO * tol and moves_little(other) and is_long(other, steps * work / other.work):
+        linear = probe(LINEAR, tried)
+        left_out, own_work = difference(linear, other), linear.work * work / other.work
+        if left_out <= LINEAR_SHARE * tol and own_work < min(work, AUTO_WORK_GROWTH * best):
+            return InTime(LINEAR, allowed, rate * allowed + left_out, *probed, own_work / spent, tried,
+                          f"integrator {LINEAR} with tol {allowed:.2g}: on a coarse mesh within {left_out:.1e} of "
+                          f"{DAMPING}, for {linear.work / other.work:.2g} of its work")
     if allowed < MIN_TOL_RATIO * tol or work >= AUTO_WORK_GROWTH * best:
         return InTime(AUTO, own, ASSUMED_ERROR * tol, *probed, best / spent, tried,
                       f"integrator {AUTO}, by stiffness and tolerance: {DAMPING}, whose error on a coarse mesh is "

@@ -152,7 +152,7 @@ def test_differences_that_grew_before_they_fell_are_of_a_lower_order():
 
 def _probe(work: float, steps: int = 500, iterations: int = 600):
     report = {"integrator": "radau", "steps": steps, "newton_iterations": iterations}
-    return SimpleNamespace(work=work, run=SimpleNamespace(report=report))
+    return SimpleNamespace(work=work, scene=SimpleNamespace(cables={}), run=SimpleNamespace(report=report))
 
 
 @pytest.mark.parametrize("rate", [0.2, 0.5, 1.6])
