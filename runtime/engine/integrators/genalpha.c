@@ -189,7 +189,7 @@ static int step(fu_run *run, double h)
 static double error(fu_run *run, double h)
 {
     const fu_alpha_scheme *g = fu_alpha_scheme_of(run);
-    const double smooth = fabs(g->beta + 0.5 * (g->alpha_m - g->alpha_f) - 1.0 / 6.0);
+    const double smooth = fu_alpha_error_factor(g);
     const double factor = h * h * (fu_count_changes(run) ? MEAN_JUMP_DISTANCE : smooth);
     fu_set_difference(run->model->threads, run->model->n_dof, factor, run->next.acceleration, run->now.acceleration,
                       run->work);
@@ -197,13 +197,6 @@ static double error(fu_run *run, double h)
 }
 
 /* Deferred events do not need the change of the trapezoidal rule by the spectral radius. */
-static fu_quadrature quadrature(const fu_run *run)
-{
-    static const double b[] = {0.5, 0.5}, c[] = {0.0, 1.0};
-    (void)run;
-    return (fu_quadrature){2, b, c};
-}
-
 static void account(fu_run *run, double h)
 {
     const workspace w = space(run);
@@ -231,7 +224,7 @@ const fu_integrator fu_genalpha = {.name = "genalpha",
                                    .start = start,
                                    .step = step,
                                    .error = error,
-                                   .quadrature = quadrature,
+                                   .quadrature = fu_alpha_quadrature,
                                    .account = account,
                                    .has_matrix = 1,
                                    .crosses_boundaries = 1,

@@ -5,6 +5,8 @@
 #include "base/workspace.h"
 #include "equations/run.h"
 
+#include <math.h>
+
 typedef struct {
     double alpha_m, alpha_f, beta, gamma;
 } fu_alpha_scheme;
@@ -25,6 +27,20 @@ static inline long fu_alpha_parameters(const double *given)
 static inline double fu_alpha_sigma(const fu_alpha_scheme *g, double h)
 {
     return g->beta * h * h * (1.0 - g->alpha_f) / (1.0 - g->alpha_m);
+}
+
+/* Returns the factor of the change of accelerations in the local error of positions of a smooth step, over h^2. */
+static inline double fu_alpha_error_factor(const fu_alpha_scheme *g)
+{
+    return fabs(g->beta + 0.5 * (g->alpha_m - g->alpha_f) - 1.0 / 6.0);
+}
+
+/* Deferred events do not need the change of the trapezoidal rule by the spectral radius. */
+static inline fu_quadrature fu_alpha_quadrature(const fu_run *run)
+{
+    static const double b[] = {0.5, 0.5}, c[] = {0.0, 1.0};
+    (void)run;
+    return (fu_quadrature){2, b, c};
 }
 
 #endif

@@ -204,7 +204,7 @@ static double error(fu_run *run, double h)
     if (run->fixed_step > 0.0 && run->statistics.steps % STEPS_PER_ESTIMATE) return run->last_error;
     const fu_alpha_scheme *g = fu_alpha_scheme_of(run);
     const fu_linear_space w = fu_linear_space_of(run);
-    const double factor = h * h * fabs(g->beta + 0.5 * (g->alpha_m - g->alpha_f) - 1.0 / 6.0);
+    const double factor = h * h * fu_alpha_error_factor(g);
     for (int i = 0; i < run->model->n_dof; ++i)
         run->work[i] = factor * (run->next.acceleration[i] - run->now.acceleration[i]);
     fu_mass_times(run->model, run->next.q, run->work, run->before);
@@ -212,13 +212,6 @@ static double error(fu_run *run, double h)
     fu_linear_model_solve(run->linear, factor_of(run, h), w.change);
     fu_linear_model_expand(run->linear, run->model->n_dof, w.change, run->work);
     return fu_error_size(run, run->work, fu_allowed_elsewhere(run));
-}
-
-static fu_quadrature quadrature(const fu_run *run)
-{
-    static const double b[] = {0.5, 0.5}, c[] = {0.0, 1.0};
-    (void)run;
-    return (fu_quadrature){2, b, c};
 }
 
 static double dissipated_power(fu_run *run, const fu_linear_space *w, const fu_state *state)
@@ -330,7 +323,7 @@ const fu_integrator fu_linear = {.name = "linear",
                                  .start = start,
                                  .step = step,
                                  .error = error,
-                                 .quadrature = quadrature,
+                                 .quadrature = fu_alpha_quadrature,
                                  .account = account,
                                  .row = row,
                                  .keeps_scratch = 1,
