@@ -19,6 +19,7 @@
 #define MIN_GROWTH 1.4             /* growth below which a step keeps its size, and its factored matrix */
 #define RETRY_FACTOR 0.5           /* of a failed step: the next one */
 #define ROUNDING_OF_STEPS 1e-9     /* of a number of steps: its rounding */
+#define REMAINDER_SHARE 0.1        /* of the last step's error: it is permitted to short steps */
 #define ROUND_OFF 4e-16            /* of a coordinate or a lever: two units in its last place */
 #define NEWTON_SHARE 0.1           /* of the permitted error, times the step over the duration: Newton's tolerance */
 #define MAX_NEWTON_TOLERANCE 1e-10 /* of the extent: largest Newton tolerance */
@@ -88,7 +89,7 @@ double fu_allow(fu_run *run, double h)
         ERROR_SAFETY * h / (turns ? run->duration : fmax(run->now.t + h, FIRST_PERIOD * run->duration));
     const double allowed = fmax(fu_allowed_error(run) * fmin(1.0, run->error_overestimate * share), run->round_off);
     run->newton_tolerance = newton_tolerance(run, h, allowed, fmax(run->extent, scale));
-    return run->allowed = allowed;
+    return run->allowed = fmax(allowed, REMAINDER_SHARE * run->last_error);
 }
 
 /* Sets the next step by the last error relative to the permitted one: the error falls with the power order + 1 of the
