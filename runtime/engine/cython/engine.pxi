@@ -199,9 +199,10 @@ cdef extern from * nogil:
         double *K, *L, *U, *B, *C, *D, *X, *inverse, *mirror
         fu_span *span_B, *span_C, *span_X
         fu_matrix_block *columns, *rows
-        int *pivot_band, *pivot_border
+        int *pivot_band, *pivot_border, *pivot_full
+        double *full
         fu_threads *threads
-    int FU_MAX_INVERTED
+    int FU_MAX_INVERTED, FU_MAX_SMALL
     long FU_INVERSE_ROWS(long n)
     ctypedef struct fu_model:
         int dim, n_cables, n_bodies, n_couplings, n_motions

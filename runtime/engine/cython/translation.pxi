@@ -340,6 +340,12 @@ cdef class Translation(Arrays):
         system.L, system.U = self._zeros(factor), self._zeros(factor)
         system.pivot_band, system.pivot_border = self._int_zeros(n), self._int_zeros(m)
 
+    cdef _full(self, fu_system *system):
+        """Allocate the full matrix of a system of few unknowns with a dense border."""
+        cdef int n = system.n + system.m
+        if system.m and n <= FU_MAX_SMALL and system.fronts.n == 1:
+            system.full, system.pivot_full = self._zeros(n * n), self._int_zeros(n)
+
     cdef _state(self, fu_state *state, model):
         """Allocate the arrays of a state (state.h), with the model as drawn."""
         cdef int k
@@ -381,6 +387,7 @@ cdef class Translation(Arrays):
         width = max(model.width, FU_BAND_GROUP - 1)
         self.newton_elimination, accelerations = model.newton, model.accelerations
         self._system(&run.newton, &self.newton_fronts, model, model.newton, width)
+        self._full(&run.newton)
         a = &run.accelerator
         self._system(&a.mass, &self.mass_fronts, model, accelerations, width)
         sizes = np.diff(model.chains).tolist()

@@ -26,12 +26,8 @@ static int factor(fu_run *run, const fu_newton *method, double h)
 {
     const double begin = fu_clock();
     method->matrix(run, h);
-    int info = fu_system_factor_band(&run->newton, run->model->lapack);
+    const int info = fu_system_factor(&run->newton, run->model->lapack);
     if (info) fu_fail_at(run, FU_MATRIX, info - 1);
-    else {
-        info = fu_system_factor_border(&run->newton, run->model->lapack);
-        if (info) fu_fail_at(run, FU_MATRIX, run->newton.n + info - 1);
-    }
     run->factored = !info;
     run->h_factored = h;
     run->contraction = FIRST_CONTRACTION;

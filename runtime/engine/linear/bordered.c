@@ -67,6 +67,7 @@ int fu_system_factor_band(fu_system *s, const fu_lapack *lapack)
 {
     int width = s->width, rows = FU_BAND_ROWS(width), info = 0;
     s->definite = 1;
+    s->is_full = 0;
     for (int c = 0; c < s->n_chains; ++c) {
         s->factorisations[c] = factor_symmetric(s, c)   ? FU_SYMMETRIC
                                : factor_unpivoted(s, c) ? FU_UNPIVOTED
@@ -318,6 +319,10 @@ static void clear_beyond(const fu_system *s, double *y)
 void fu_system_solve(const fu_system *s, const fu_lapack *lapack, double *x)
 {
     double *y = x + s->n;
+    if (s->is_full) {
+        fu_small_solve(s->n + s->m, s->full, s->pivot_full, x);
+        return;
+    }
     clear_beyond(s, y);
     for (int c = 0; c < s->n_chains; ++c) solve_chain(s, lapack, c, (fu_span){s->chains[c], s->chains[c + 1]}, x);
     if (!s->m) return;
@@ -333,8 +338,12 @@ void fu_system_solve(const fu_system *s, const fu_lapack *lapack, double *x)
 void fu_system_solve_border(const fu_system *s, const fu_lapack *lapack, double *x)
 {
     double *y = x + s->n;
-    clear_beyond(s, y);
     for (int i = 0; i < s->n; ++i) x[i] = 0.0;
+    if (s->is_full) {
+        fu_system_solve(s, lapack, x);
+        return;
+    }
+    clear_beyond(s, y);
     solve_border(s, lapack, y);
     take_columns(s, y, x);
 }

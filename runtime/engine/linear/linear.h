@@ -1,5 +1,5 @@
 /* Banded matrices with a border, and LAPACK for their parts: linear/band.c, linear/bordered.c,
- * linear/unsymmetric_band.c, linear/inverse.c, linear/small.c. */
+ * linear/unsymmetric_band.c, linear/inverse.c, linear/small.c, linear/full.c. */
 #ifndef FUNICULAR_LINEAR_LINEAR_H
 #define FUNICULAR_LINEAR_LINEAR_H
 
@@ -38,7 +38,7 @@ void fu_lapack_attach(fu_lapack *lapack, int k, const void *function);
 #define FU_INVERSE_ROWS(n) (((n) + FU_INVERSE_GROUP - 1) / FU_INVERSE_GROUP * FU_INVERSE_GROUP)
 
 /* small.c: the largest matrix that is factored there. */
-#define FU_MAX_SMALL 24
+#define FU_MAX_SMALL 32
 
 /* Chains of this number of unknowns and more are eliminated from both ends towards their middle (twisted.c), by two
  * threads if there are: shorter ones are too fast to share. Then the columns of a factored chain beyond its unknowns:
@@ -107,6 +107,9 @@ typedef struct {
     int *pivot_band, *pivot_border;
     double *inverse; /* null, or the inverse of the band, FU_INVERSE_ROWS a column, if `inverted` */
     int inverted;
+    double *full; /* null, or all of the matrix, factored, if `is_full` (full.c); by columns */
+    int *pivot_full;
+    int is_full;
     fu_threads *threads; /* null for one */
 } fu_system;
 
@@ -153,6 +156,7 @@ int fu_strip_of(fu_system *system, int k, int chain);
 void fu_find_significant(const fu_system *system, int strip, const double *x, fu_span rows[FU_HALVES]);
 int fu_list_blocks(const fu_system *system, int strip, const fu_span rows[FU_HALVES], fu_matrix_block *blocks);
 void fu_system_release_border(fu_system *system);
+int fu_system_factor(fu_system *system, const fu_lapack *lapack);
 int fu_system_factor_band(fu_system *system, const fu_lapack *lapack);
 void fu_system_invert_band(fu_system *system);
 void fu_system_keep_border(fu_system *system, const fu_lapack *lapack, int columns);
