@@ -246,13 +246,17 @@ void fu_add_line(const fu_model *model, fu_system *system, int line, int is_row,
     if (!s) return;
     const int beyond = model->n_band + model->n_border_dof - model->n_dof, extra = beyond + line;
     double *entries = is_row ? s->C : s->B;
+    /* the line in a dense border, and the distance of its entries */
+    const int m = s->m, by = is_row ? m : 1;
+    double *border = s->fronts->n == 1 ? s->D + (is_row ? extra - s->n : (extra - s->n) * m) : 0;
     fu_span *spans = is_row ? s->span_C : s->span_B;
     for (int i = 0, chain = -1, strip = -1; i < n; ++i) {
         const int unknown = at[i] < model->n_dof ? model->unknown_of_dof[at[i]] : beyond + at[i];
         const double added = factor * value[i];
         if (unknown == FU_FIXED) continue;
         if (unknown < 0) fu_add(model, s, is_row ? line : at[i], is_row ? at[i] : line, added);
-        if (unknown >= s->n) add(s, is_row ? extra : unknown, is_row ? unknown : extra, added);
+        if (unknown >= s->n && border) border[(unknown - s->n) * by] += added;
+        else if (unknown >= s->n) add(s, is_row ? extra : unknown, is_row ? unknown : extra, added);
         if (unknown < 0 || unknown >= s->n) continue;
         const int half = s->half[unknown];
         if (half / FU_HALVES != chain) {
