@@ -237,6 +237,26 @@ void fu_add_body(const fu_model *model, fu_system *s, int dof, int n, const doub
     add_together(s, first, n, first, n, 1.0, values, n, 1);
 }
 
+/* Adds to a line of the border, numbered k there, a factor times values over unknowns of the band that follow each
+ * other in half a chain, the first of them `unknown`; returns their number, n at most. */
+static int add_run(const fu_model *model, fu_system *s, int k, int is_row, int unknown, int n, const int *at,
+                   const double *value, double factor)
+{
+    const int half = s->half[unknown], strip = fu_strip_of(s, k, half / FU_HALVES);
+    double *entries = strip < 0 ? 0 : (is_row ? s->C : s->B) + s->strips[strip].at + unknown;
+    int i = 0;
+    do {
+        if (entries) entries[i] += factor * value[i];
+        else s->D[s->fronts->size] += fabs(factor * value[i]);
+        ++i;
+    } while (i < n && at[i] < model->n_dof && model->unknown_of_dof[at[i]] == unknown + i && unknown + i < s->n &&
+             s->half[unknown + i] == half);
+    fu_span *span = strip < 0 ? 0 : (is_row ? s->span_C : s->span_B) + FU_HALVES * strip + half % FU_HALVES;
+    if (span) extend_span(span, unknown);
+    if (span) extend_span(span, unknown + i - 1);
+    return i;
+}
+
 /* Adds to a line of the border, its row or its column, a factor times n values over the dofs `at`. line: numbered by
  * fu_extra. Without a system (null) does nothing. */
 void fu_add_line(const fu_model *model, fu_system *system, int line, int is_row, int n, const int *at,
@@ -245,30 +265,18 @@ void fu_add_line(const fu_model *model, fu_system *system, int line, int is_row,
     fu_system *s = system;
     if (!s) return;
     const int beyond = model->n_band + model->n_border_dof - model->n_dof, extra = beyond + line;
-    double *entries = is_row ? s->C : s->B;
     /* the line in a dense border, and the distance of its entries */
     const int m = s->m, by = is_row ? m : 1;
     double *border = s->fronts->n == 1 ? s->D + (is_row ? extra - s->n : (extra - s->n) * m) : 0;
-    fu_span *spans = is_row ? s->span_C : s->span_B;
-    for (int i = 0, chain = -1, strip = -1; i < n; ++i) {
+    for (int i = 0, done = 1; i < n; i += done, done = 1) {
         const int unknown = at[i] < model->n_dof ? model->unknown_of_dof[at[i]] : beyond + at[i];
         const double added = factor * value[i];
         if (unknown == FU_FIXED) continue;
         if (unknown < 0) fu_add(model, s, is_row ? line : at[i], is_row ? at[i] : line, added);
-        if (unknown >= s->n && border) border[(unknown - s->n) * by] += added;
-        else if (unknown >= s->n) add(s, is_row ? extra : unknown, is_row ? unknown : extra, added);
-        if (unknown < 0 || unknown >= s->n) continue;
-        const int half = s->half[unknown];
-        if (half / FU_HALVES != chain) {
-            chain = half / FU_HALVES;
-            strip = fu_strip_of(s, extra - s->n, chain);
-        }
-        if (strip < 0) {
-            s->D[s->fronts->size] += fabs(added);
-            continue;
-        }
-        entries[s->strips[strip].at + unknown] += added;
-        extend_span(spans + FU_HALVES * strip + half % FU_HALVES, unknown);
+        else if (unknown < s->n)
+            done = add_run(model, s, extra - s->n, is_row, unknown, n - i, at + i, value + i, factor);
+        else if (border) border[(unknown - s->n) * by] += added;
+        else add(s, is_row ? extra : unknown, is_row ? unknown : extra, added);
     }
 }
 
