@@ -43,7 +43,7 @@ def stretches(cable: CableModel, first: np.ndarray, last: np.ndarray, element: n
     shapes = slopes(cable, *parts)
     in_rows = first.reshape(-1, *first.shape[-3:]), last.reshape(-1, *last.shape[-3:])
     lengths = slope_lengths(shapes if shapes.shape[1] == 1 else shapes[:, element], *in_rows)
-    return np.asarray(np.einsum("p,p...->...", weights, lengths)).reshape(first.shape[:-2])
+    return np.asarray(np.dot(weights, lengths.reshape(len(parts), -1))).reshape(first.shape[:-2])
 
 
 def middle_strain(cable: CableModel, nodal_vectors: np.ndarray) -> np.ndarray:

@@ -13,11 +13,9 @@ and motion bear forces, too: half of their energies counts. The moment at the cl
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from ...base.rotations import sizes
+from ...engine import chord_lengths, moments_along, tension_work
 from ...kernels.mesh import Mesh
 from ...model.middle_strain import gauss_rule, strains_at
 from ...model.model import CableModel, Model
@@ -26,11 +24,9 @@ from ...parts.locations import attached
 from ...parts.scene_data import SceneData
 from .note import LineStiffness, Note, Rows
 
-STRAIN_POSITIONS, STRAIN_WEIGHTS = (np.array(each) for each in gauss_rule(5))
+STRAIN_RULE = gauss_rule(5)
+STRAIN_POSITIONS, STRAIN_WEIGHTS = (np.array(each) for each in STRAIN_RULE)
 """Gauss points and weights of the strain, as fractions of the length of an element."""
-_CENTRED = 2 * STRAIN_POSITIONS - 1
-OSCILLATION = np.eye(len(STRAIN_WEIGHTS)) - STRAIN_WEIGHTS - 3 * np.outer(_CENTRED, STRAIN_WEIGHTS * _CENTRED)
-"""The strain at the Gauss points less its line of best fit is this matrix times the strain."""
 WORK_ERROR_FACTOR, ENERGY_ERROR_FACTOR = 15.0, 2.0
 """Error of forces over E/W, with W the work of the tension, and with W the energies of bending and of motion."""
 FORCE_ERROR_LIMIT = 0.01
@@ -57,7 +53,9 @@ class _Strains:
         self.EA, self.EI, *_ = LineStiffness.of(self.part, model.dim)
         self.h = cable.mesh.all_lengths
         self.supported = sorted(self.part.node(each.s) for each in scene.supports if each.cable == cable.name)
-        self.drawn = self._strain(self.part.rest_nodal_vectors[None]) if self.part.is_curved else 0.0
+        self.is_slack_in_compression = self.part.traits.membrane == "tension_only"
+        if self.part.is_curved:
+            self.drawn = self._strain(self.part.rest_nodal_vectors[None])
         self.scene = scene
 
     @property
@@ -67,21 +65,22 @@ class _Strains:
 
     def _strain(self, nodal: np.ndarray) -> np.ndarray:
         """Return (positions, T, elements); nodal: (T, nodes, vectors, dim)."""
-        return strains_at(self.cable, nodal, STRAIN_POSITIONS.tolist())
+        return strains_at(self.cable, nodal, STRAIN_RULE[0])
 
-    def of(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the strain (positions, T, elements), its mean over each element (T, elements), and E (T, elements) in
-        J.
-        """
-        strain = self._strain(self.cable.nodal(q)) - self.drawn
-        if self.part.traits.membrane == "tension_only":
-            strain = np.maximum(strain, 0.0)
-        by_point, shape = strain.reshape(len(STRAIN_WEIGHTS), -1), strain.shape[1:]
-        mean, square = STRAIN_WEIGHTS @ by_point, STRAIN_WEIGHTS @ (OSCILLATION @ by_point) ** 2
-        return strain, mean.reshape(shape), 0.5 * self.EA * self.h * square.reshape(shape)
+    def of(self, q: np.ndarray) -> np.ndarray:
+        """Return (3, T, elements): the mean of the strain over each element, that of its square, and E in J."""
+        strain = self._strain(self.cable.nodal(q))
+        if self.part.is_curved:
+            strain -= self.drawn
+        if self.is_slack_in_compression:
+            np.maximum(strain, 0.0, out=strain)
+        found = moments_along(strain, STRAIN_POSITIONS, STRAIN_WEIGHTS)
+        found[2] *= 0.5 * self.EA * self.h
+        return found
 
-    def bending(self, q: np.ndarray, strain: np.ndarray) -> np.ndarray:
-        """Return (T,): the elastic energy at q (T, n) without that of the axial strain (positions, T, elements), in J.
+    def bending(self, q: np.ndarray, square: np.ndarray) -> np.ndarray:
+        """Return (T,): the elastic energy at q (T, n) without that of the axial strain, whose mean square over each
+        element is (T, elements), in J.
         """
         cable, e = self.cable, element_coordinates(self.cable, q)
         energy, h, A = cable.law_kernel("energy"), cable.mesh.lengths, cable.A
@@ -90,8 +89,7 @@ class _Strains:
         else:
             h, A = np.broadcast_to(h, len(self.h)), np.broadcast_to(A, (len(self.h), A.shape[1]))
             whole = np.array([energy.rows(len(self.h), h, each, A) for each in e])
-        axial = 0.5 * self.EA * np.einsum("p,pte,e->t", STRAIN_WEIGHTS, strain**2, self.h)
-        return np.asarray(np.maximum(whole.reshape(len(e), -1).sum(axis=1) - axial, 0.0))
+        return np.asarray(np.maximum(whole.reshape(len(e), -1).sum(axis=1) - 0.5 * self.EA * square @ self.h, 0.0))
 
     def motion(self, v: np.ndarray) -> np.ndarray:
         """Return (T,): the kinetic energy at rates v (T, n), in J."""
@@ -104,38 +102,33 @@ class _Line:
 
     def __init__(self, strains: list[_Strains]):
         self.strains, self.name = strains, strains[0].part.name
-        self.ends = sorted({0, strains[0].cable.n_elements, *strains[0].supported})
+        self.EA, self.h = (np.concatenate(each) for each in zip(*((s.EA * np.ones_like(s.h), s.h) for s in strains),
+                                                                strict=True))
+        self.ends = sorted({0, strains[0].cable.n_elements, *strains[0].supported}) if len(strains) == 1 else [0]
 
     def of(self, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return E (T, elements) and its measure (T,) of unit error, both in J, and the tension (T, elements) in N, at
         coordinates q and rates v (T, n).
         """
-        strain, mean, each_lost = zip(*(each.of(q) for each in self.strains), strict=True)
-        lost, tension = np.concatenate(each_lost, axis=1), [s.EA * e for s, e in zip(self.strains, mean, strict=True)]
-        measure = self._work(q, mean, tension) / WORK_ERROR_FACTOR
-        k = np.flatnonzero(lost.sum(axis=1) > FORCE_ERROR_LIMIT / MID_ELEMENT_FACTOR * measure)
+        each = [one.of(q) for one in self.strains]
+        mean, _, lost = each[0] if len(each) == 1 else np.concatenate(each, axis=2)
+        measure = self._work(q, mean) / WORK_ERROR_FACTOR
+        k = np.flatnonzero(np.add.reduce(lost, axis=1) > FORCE_ERROR_LIMIT / MID_ELEMENT_FACTOR * measure)
         if len(k):
-            measure[k] += sum(each.bending(q[k], e[:, k]) + each.motion(v[k])
-                              for each, e in zip(self.strains, strain, strict=True)) / ENERGY_ERROR_FACTOR
-        return lost, measure, np.concatenate(tension, axis=1)
+            measure[k] += sum(one.bending(q[k], of[1, k]) + one.motion(v[k])
+                              for one, of in zip(self.strains, each, strict=True)) / ENERGY_ERROR_FACTOR
+        return lost, measure, self.EA * mean
 
-    def _work(self, q: np.ndarray, mean: Sequence[np.ndarray], tension: Sequence[np.ndarray]) -> np.ndarray:
-        """Return (T,): the work of the tension, see above: of one cable between its ends and supports, of several
-        between the two supports with the largest distance.
+    def _work(self, q: np.ndarray, mean: np.ndarray) -> np.ndarray:
+        """Return (T,): the work of the tension at mean strains (T, elements), see above: of one cable between its ends
+        and supports, of several between the two supports with the largest distance.
         """
-        stretching = sum(np.abs(N * e) @ each.h for each, N, e in zip(self.strains, tension, mean, strict=True))
-        length = [each.h * (1 + e) for each, e in zip(self.strains, mean, strict=True)]
-        forces = [np.abs(N) * part for N, part in zip(tension, length, strict=True)]
         if len(self.strains) == 1:
-            force, along = (np.add.reduceat(each[0], self.ends[:-1], axis=1) for each in (forces, length))
-            r = self.strains[0].cable.positions(q)[:, self.ends]
-            apart = sizes(r[:, 1:] - r[:, :-1])
-        else:
-            force, along = (sum(part.sum(axis=1, keepdims=True) for part in each) for each in (forces, length))
-            r = np.concatenate([each.cable.positions(q)[:, each.supported] for each in self.strains], axis=1)
-            apart = np.linalg.norm(r[:, :, None] - r[:, None], axis=-1).max(axis=(1, 2), initial=0.0)[:, None]
-        unrolling = np.maximum(force - force / np.where(along > 0, along, 1.0) * apart, 0.0)
-        return np.asarray(stretching + np.sum(unrolling, axis=1))
+            r = self.strains[0].cable.positions(q)
+            return tension_work(mean, self.EA, self.h, chord_lengths(r, self.ends), self.ends[:-1])
+        r = np.concatenate([each.cable.positions(q)[:, each.supported] for each in self.strains], axis=1)
+        apart = np.linalg.norm(r[:, :, None] - r[:, None], axis=-1).max(axis=(1, 2), initial=0.0)[:, None]
+        return tension_work(mean, self.EA, self.h, apart, self.ends)
 
     def note(self, lost: np.ndarray, measure: float, tension: np.ndarray) -> str | None:
         """Return a note where E (elements,) is large beside its measure; tension: (elements,) in N."""
@@ -183,6 +176,7 @@ class CoarseMeshes(Note):
     measure, and of the tension of its elements, see `_Line.of`.
     """
 
+    measures = ("cables",)
     assesses_rest, row_interval = True, ROW_INTERVAL
 
     def prepare(self) -> None:
@@ -203,11 +197,11 @@ class CoarseMeshes(Note):
     def see(self, rows: Rows) -> None:
         """Measure further output rows."""
         for line in self._lines:
-            lost, measure, tension = line.of(rows["q"], rows["v"])
-            count, *sums = self.found.get(line.name, (0, 0.0, 0.0, 0.0))
-            self.found[line.name] = [count + len(measure), *(
-                (np.array(before) + new.sum(axis=0)).tolist()
-                for before, new in zip(sums, (lost, measure, tension), strict=True))]
+            of = line.of(rows["q"], rows["v"])
+            new = [len(rows["q"]), *(np.add.reduce(each).tolist() for each in of)]
+            before = self.found.get(line.name)
+            self.found[line.name] = new if before is None else [
+                (np.array(one) + other).tolist() for one, other in zip(before, new, strict=True)]
 
     def notes(self) -> list[str]:
         """Return a note for each cable whose mesh is too coarse."""

@@ -9,12 +9,12 @@ h/sqrt(EI/N) of 0.5 to 8. While the rope slides, each node that passes the point
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ...base.rotations import sizes
-from ...engine import outputs_by_name
+from ...engine import around_elements, outputs_by_name
 from ...model.middle_strain import middle_strain
 from ...model.model import SlideModel
 from ...model.span_coordinates import PER_NODE, SpanCoordinates
@@ -23,6 +23,9 @@ from ...parts.rope import Rope
 from .coarse_meshes import FORCE_ERROR_LIMIT, ROW_INTERVAL
 from .note import LineStiffness, Note, Rows
 
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
+
 LENGTH_FACTOR, ANGLE_FACTOR = 0.02, 0.08
 """Difference of the tensions over the squared angle times h/sqrt(EI/N), and its upper bound over the squared angle."""
 ROUNDING = float(np.finfo(float).eps)
@@ -30,14 +33,13 @@ ROUNDING = float(np.finfo(float).eps)
 
 
 class _Beside(NamedTuple):
-    """Slopes (T, dim) of a line by its arc-length before and after a slide, its strain, and the length of the element
-    that has the slide, m (T,).
+    """The cosine of the angle between the slopes of a line before and after a slide, its strain, and the length of the
+    element that has the slide in m, (T,).
     """
 
-    before: np.ndarray
-    after: np.ndarray
+    cosine: np.ndarray
     strain: np.ndarray
-    h: np.ndarray
+    h: ArrayLike
 
 
 def _on_rope(span: SpanCoordinates, q: np.ndarray, s: np.ndarray) -> _Beside:
@@ -46,9 +48,9 @@ def _on_rope(span: SpanCoordinates, q: np.ndarray, s: np.ndarray) -> _Beside:
     """
     rows, (element, ends) = np.arange(len(q)), span.element_at(q, s)
     slopes = q[:, span.nodes].reshape(len(q), span.n_elements + 1, PER_NODE, span.dim)[:, :, 1]
-    first, last = np.maximum(element - 1, 0), np.minimum(element + 2, span.n_elements)
-    strain = np.linalg.norm(slopes[:, [0, -1]], axis=-1).min(axis=1) - 1
-    return _Beside(slopes[rows, first], slopes[rows, last], strain, np.diff(ends)[:, 0])
+    before, after = slopes[rows, np.maximum(element - 1, 0)], slopes[rows, np.minimum(element + 2, span.n_elements)]
+    cosine = np.einsum("td,td->t", before, after) / np.maximum(sizes(before) * sizes(after), np.finfo(float).tiny)
+    return _Beside(cosine, np.linalg.norm(slopes[:, [0, -1]], axis=-1).min(axis=1) - 1, np.diff(ends)[:, 0])
 
 
 class CoarseSlides(Note):
@@ -56,6 +58,7 @@ class CoarseSlides(Note):
     and of the tension in N, and the length in m of the longest element.
     """
 
+    measures = ("slides",)
     assesses_rest, row_interval = True, ROW_INTERVAL
 
     def see(self, rows: Rows) -> None:
@@ -66,36 +69,28 @@ class CoarseSlides(Note):
         for k, (slide, force) in enumerate(zip(self.model.slides, forces.T, strict=True)):
             numbers, h = self._of(slide, rows["q"], rows["s"][:, k], force)
             count, sums, longest = self.found.get(slide.name, (0, [0.0, 0.0, 0.0], 0.0))
-            self.found[slide.name] = [count + len(h), (np.array(sums) + numbers.sum(axis=0)).tolist(),
-                                      max(longest, float(h.max()))]
+            self.found[slide.name] = [count + len(force), (sums + np.add.reduce(numbers, axis=1)).tolist(),
+                                      max(longest, float(np.max(h)))]
 
-    def _of(self, slide: SlideModel, q: np.ndarray, s: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return error, angle and tension (T, 3), see `found`, and lengths of elements (T,), at coordinates q (T, n),
+    def _of(self, slide: SlideModel, q: np.ndarray, s: np.ndarray,
+            force: np.ndarray) -> tuple[np.ndarray, ArrayLike]:
+        """Return error, angle and tension (3, T), see `found`, and lengths of elements (T,), at coordinates q (T, n),
         arc-lengths s (T,) and forces on the rider (T,) in N.
         """
         at = self._on_cable(slide, q, s) if slide.coordinates is None else _on_rope(slide.coordinates, q, s)
-        square, other, product = (np.einsum("td,td->t", one, two) for one, two in (
-            (at.before, at.before), (at.after, at.after), (at.before, at.after)))
-        cosine = product / np.maximum(np.sqrt(square) * np.sqrt(other), np.finfo(float).tiny)
-        half = np.maximum(np.arccos(np.minimum(np.maximum(cosine, -1), 1)) / 2, ROUNDING)
+        half = np.maximum(np.arccos(np.minimum(np.maximum(at.cosine, -1), 1)) / 2, ROUNDING)
         of = self._stiffness(slide)
         tension = np.maximum(np.maximum(of.EA * at.strain, force / (2 * np.sin(half))), 1e-300)
         angle = 2 * np.arcsin(np.minimum(force / (2 * tension), 1.0))
         longer = at.h * np.sqrt(tension / of.EI_strong)
         error = np.where(longer > 1, np.minimum(LENGTH_FACTOR * longer, ANGLE_FACTOR) * angle**2, 0.0)
-        return np.array([error, angle, tension]).T, at.h
+        return np.array([error, angle, tension]), at.h
 
     def _on_cable(self, slide: SlideModel, q: np.ndarray, s: np.ndarray) -> _Beside:
         cable = self.model.cables[slide.cable]
-        n, rows, nodal = cable.n_elements, np.arange(len(q)), cable.nodal(q)
-        element = cable.mesh.element_at(s)
-        first, last = np.maximum(element - 1, 0), np.minimum(element + 2, n)
-        slopes = nodal[:, :, cable.vectors.index("r_x")]
-        mean = np.zeros((len(q), n + 1))
-        np.cumsum(middle_strain(cable, nodal), axis=1, out=mean[:, 1:])
-        strain = (mean[rows, last] - mean[rows, first]) / (last - first)
-        h = np.full(len(q), cable.mesh.mean) if cable.mesh.is_even else cable.mesh.lengths[element]
-        return _Beside(slopes[rows, first], slopes[rows, last], strain, h)
+        nodal, element = cable.nodal(q), cable.mesh.element_at(s)
+        cosine, strain = around_elements(nodal, cable.vectors.index("r_x"), middle_strain(cable, nodal), element)
+        return _Beside(cosine, strain, cable.mesh.each_length(element))
 
     def _line(self, slide: SlideModel) -> Cable | Rope:
         """Return the cable or rope of a slide."""

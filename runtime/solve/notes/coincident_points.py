@@ -29,6 +29,8 @@ class _Directed(NamedTuple):
 class CoincidentPoints(Note):
     """The first time in s at which the points of each spring or distance joint coincided, and their position in m."""
 
+    measures = ("point_forces", "joints")
+
     def prepare(self) -> None:
         """Select the parts to measure."""
         scene, model = self.scene, self.model

@@ -244,11 +244,13 @@ def _coarse_for_little_motion(engine: Engine, settings: RunSettings) -> list[str
 
 def trapped(scene: SceneData, engine: Engine) -> list[str]:
     """Return a note where slides that tie a frame passed many nodes, at which the curvature jumps."""
-    counts = engine.statistics
     names = [f'"{slide.name}"' for slide in scene.slides.values()
              if slide.frame != "point" and (slide.along in scene.ropes or
                                           scene.cables[slide.along].element != CONTINUOUS_CURVATURE_ELEMENT)]
-    if not names or counts["element_crossings"] < max(MANY_NODE_PASSAGES, NODE_PASSAGES_PER_STEP * counts["steps"]):
+    if not names:
+        return []
+    counts = engine.statistics
+    if counts["element_crossings"] < max(MANY_NODE_PASSAGES, NODE_PASSAGES_PER_STEP * counts["steps"]):
         return []
     return [f"slides passed nodes {counts['element_crossings']} times in {counts['steps']} steps: the curvature of "
             f"their cables or ropes jumps there and drives the frame of {' or '.join(names)} back to the node. Take "

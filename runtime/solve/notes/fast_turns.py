@@ -17,6 +17,8 @@ class FastTurns(Note):
     power of its angular velocity in rad³/s², and the end of that in s.
     """
 
+    measures = ("bodies",)
+
     def see(self, rows: Rows) -> None:
         """Measure further output rows."""
         time, size = rows["time"], 3 if self.model.dim == 3 else 1

@@ -13,6 +13,7 @@ from .note import Note, Rows
 class FleetAngles(Note):
     """The largest fleet angle of each sheave and drum of a rope in space, in rad, and its time in s."""
 
+    measures = ("ropes",)
     assesses_rest = True
 
     def prepare(self) -> None:

@@ -13,8 +13,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...base.rotations import sizes
-from ...engine import Engine
+from ...engine import Engine, chord_lengths
 from ...model.middle_strain import gauss_rule, slopes, slopes_at, stretches
 from ...model.model import CableModel
 from .note import Note, Rows, element_place
@@ -39,6 +38,7 @@ class Folds(Note):
     Cables that give way in compression are left out: how they lie where they are slack is not known.
     """
 
+    measures = ("cables",)
     assesses_rest = True
 
     def prepare(self) -> None:
@@ -49,15 +49,16 @@ class Folds(Note):
             part = self.scene.cables[cable.name]
             if part.traits.membrane != "tension_only":
                 self._cables.append((cable, cable.mesh.all_lengths if not part.is_curved
-                                     else _chords(part.rest_nodal_vectors[:, cable.vectors.index("r")])))
+                                     else chord_lengths(part.rest_nodal_vectors[None, :, cable.vectors.index("r")])[0]))
 
     def see(self, rows: Rows) -> None:
         """Measure further output rows."""
         for cable, unstressed in self._cables:
-            chords = _chords(cable.positions(rows["q"]))
-            at, element = np.nonzero(chords <= FOLDED_CHORD * unstressed)
-            if not len(at):
+            chords = chord_lengths(cable.positions(rows["q"]))
+            is_folded = chords <= FOLDED_CHORD * unstressed
+            if not is_folded.any():
                 continue
+            at, element = np.nonzero(is_folded)
             nodal, lengths = cable.nodal(rows["q"]), cable.mesh.each_length(element)
             stretch = stretches(cable, nodal[at, element], nodal[at, element + 1], element, GAUSS_RULE)
             arc = np.maximum(stretch, np.finfo(float).tiny) * lengths
@@ -110,8 +111,3 @@ def _turns(cable: CableModel, nodal: np.ndarray) -> np.ndarray:
     tangents /= np.maximum(np.linalg.norm(tangents, axis=-1, keepdims=True), np.finfo(float).tiny)
     cosines = np.einsum("aed,bed->eab", tangents, tangents).min(axis=(1, 2))
     return np.asarray(np.arccos(np.clip(cosines, -1, 1)))
-
-
-def _chords(r: np.ndarray) -> np.ndarray:
-    """Return (..., elements): distances in m of consecutive nodes (..., nodes, dim)."""
-    return sizes(r[..., 1:, :] - r[..., :-1, :])

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -32,6 +32,8 @@ class Note:
     """Whether it assesses states of rest, too."""
     row_interval = 1
     """The note sees one in this number of output rows."""
+    measures: ClassVar[tuple[str, ...]]
+    """Lists of a model with the parts that it measures: without any of them there is no such note."""
 
     def __init__(self, scene: SceneData, model: Model, step: float = 0.0, duration: float = 1.0):
         """step: in s, 0 where tol chooses it; duration: of the run, in s."""
@@ -79,10 +81,9 @@ class LineStiffness(NamedTuple):
     @classmethod
     def of(cls, part: Cable | Rope, dim: int) -> LineStiffness:
         """Return those of the section and material of a cable or rope."""
-        E, moments = part.material.youngs_modulus, part.section.moments()
-        bending = moments[1:2] if dim == 2 else moments[1:3]
-        return cls(E * float(moments[0]), E * float(min(bending)), E * float(max(bending)),
-                   part.material.density * float(part.section.mass_moments()[0]))
+        E, (area, *bending) = part.material.youngs_modulus, part.section.moments().tolist()
+        weak, strong = (bending[0],) * 2 if dim == 2 else sorted(bending[:2])
+        return cls(E * area, E * weak, E * strong, part.material.density * area)
 
 
 def element_place(cable: CableModel, k: int) -> str:

@@ -28,6 +28,7 @@ class _Limit(NamedTuple):
 class Penetrations(Note):
     """The largest penetration in m of each contact and crossing, also between output times."""
 
+    measures = ("contacts", "rope_contacts", "crossings")
     assesses_rest = True
 
     def prepare(self) -> None:

@@ -16,6 +16,7 @@ class ReducedStrain(Note):
     time in s.
     """
 
+    measures = ("cables",)
     assesses_rest = True
 
     def prepare(self) -> None:

@@ -34,6 +34,9 @@ NOTES: tuple[type[Note], ...] = (
     CoincidentPoints, FastTurns, NormalForces, SpinningSections, Penetrations, SurfaceEnds, CoarseContact,
     FleetAngles, SlackRopes)
 
+MEASURED = {name for kind in NOTES for name in kind.measures}
+"""Lists of a model that notes measure."""
+
 N = TypeVar("N", bound=Note)
 
 
@@ -51,17 +54,23 @@ class _Thinned(dict[str, np.ndarray]):
         return found
 
 
+def _kinds_for(model: Model) -> list[type[Note]]:
+    """Return the notes that have something to measure in a model."""
+    has = {name: bool(getattr(model, name)) for name in MEASURED}
+    return [kind for kind in NOTES if any([has[name] for name in kind.measures])]
+
+
 class RowNotes:
     """The measurements of all notes on a run."""
 
     def __init__(self, scene: SceneData, model: Model, step: float = 0.0, duration: float = 1.0):
         """step: in s, 0 where tol chooses it; duration: of the run, in s."""
         self._rows = 0
-        self._notes = {kind: kind(scene, model, step, duration) for kind in NOTES}
+        self._notes = {kind: kind(scene, model, step, duration) for kind in _kinds_for(model)}
 
-    def __getitem__(self, kind: type[N]) -> N:
-        """Return the note of a class."""
-        return cast(N, self._notes[kind])
+    def __getitem__(self, kind: type[N]) -> N | None:
+        """Return the note of a class, None where the scene has nothing that it measures."""
+        return cast(N | None, self._notes.get(kind))
 
     def see(self, engine: Engine) -> None:
         """Measure the rows that the engine has, and the ends of its steps."""
@@ -101,7 +110,7 @@ def rest_notes(scene: SceneData, model: Model, engine: Engine, state: Mapping[st
     rows = {"time": np.zeros(1), "q": state["q"][None], "v": np.zeros((1, model.n_dof)), "s": state["s"][None],
             **{kind: numbers[None] for kind, numbers in couplings.items()}}
     texts = []
-    for kind in NOTES:
+    for kind in _kinds_for(model):
         if kind.assesses_rest:
             note = kind(scene, model)
             note.see_rest(rows, engine)

@@ -10,6 +10,8 @@ bent cable bears less. Both fractions are measured on scenes with references (te
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ...base.rotations import rotate
@@ -45,6 +47,34 @@ TOPPLING_JOINTS = "spherical", "revolute", "universal"
 """Kinds of joints about which a body can fall over."""
 
 
+class _Strut(NamedTuple):
+    """A cable, and its stiffness in N against compression."""
+
+    cable: CableModel
+    part: Cable
+    of: LineStiffness
+    stiffness: float
+
+    @classmethod
+    def find(cls, cable: CableModel, part: Cable, dim: int) -> _Strut:
+        """Return that of a cable in a scene of a dimension."""
+        return cls(cable, part, LineStiffness.of(part, dim),
+                   compressive_stiffness(part.traits.membrane, part.section, part.material))
+
+    def rates(self, q: np.ndarray) -> np.ndarray:
+        """Return (times, elements): the rates in 1/s at which elements of the cable buckle."""
+        cable, length, (_, EI, _, mass) = self.cable, self.part.length, self.of
+        nodal = cable.nodal(q)
+        strain = stretches(cable, nodal[:, :-1], nodal[:, 1:], np.arange(cable.n_elements), SIMPSON_RULE) - 1
+        if self.stiffness * -strain.min() <= EI * (np.pi / length) ** 2:  # not even in one wave along the cable
+            return np.zeros(strain.shape)
+        N = self.stiffness * np.maximum(-strain, 0.0)
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # of a rope without stiffness
+            k = np.clip(np.nan_to_num(np.sqrt(N / (2 * EI)), posinf=np.inf), np.pi / length,
+                        np.pi / cable.mesh.lengths)
+            return np.asarray(np.nan_to_num(np.sqrt(np.maximum(k**2 * (N - EI * k**2), 0.0) / mass)))
+
+
 class Sensitivity(Note):
     """The exponents by which errors grow, in each element of a cable or at each joint on which a body stands; the time
     in s until which they are summed, that from which on errors grow, -1 if they do not, and the number of output times.
@@ -52,8 +82,12 @@ class Sensitivity(Note):
     Its note depends on the errors of the steps, see `sensitive`.
     """
 
+    measures = ("cables", "joints")
+
     def prepare(self) -> None:
-        """Select the joints about which a body can fall over."""
+        """Select the joints about which a body can fall over, and find the stiffnesses of the cables."""
+        self._cables = [_Strut.find(cable, self.scene.cables[cable.name], self.model.dim)
+                        for cable in self.model.cables]
         loops, parts = joints_in_loops(self.model), self.scene.joints
         self._joints = [(k, joint, parts[joint.name]) for k, joint in enumerate(self.model.joints)
                         if joint.slide is None and not loops[k] and parts[joint.name].joint_kind in TOPPLING_JOINTS
@@ -61,9 +95,8 @@ class Sensitivity(Note):
 
     def see(self, rows: Rows) -> None:
         """Measure further output rows."""
-        for cable in self.model.cables:
-            part = self.scene.cables[cable.name]
-            self._add(part.where, rows["time"], CABLE_EXPONENT_FACTOR * self._of_cable(cable, part, rows["q"]))
+        for strut in self._cables:
+            self._add(strut.part.where, rows["time"], CABLE_EXPONENT_FACTOR * strut.rates(rows["q"]))
         for k, joint, hinge in self._joints:
             self._add(hinge.where, rows["time"], BODY_EXPONENT_FACTOR * self._of_joint(k, joint, rows))
 
@@ -89,20 +122,6 @@ class Sensitivity(Note):
             exponents = grown[-1].tolist()
         self.found[name] = [exponents, float(time[-1]), since, rows + len(time)]
 
-    def _of_cable(self, cable: CableModel, part: Cable, q: np.ndarray) -> np.ndarray:
-        """Return (times, elements): the rates in 1/s at which elements of a cable buckle."""
-        nodal = cable.nodal(q)
-        strain = stretches(cable, nodal[:, :-1], nodal[:, 1:], np.arange(cable.n_elements), SIMPSON_RULE) - 1
-        _, EI, _, mass = LineStiffness.of(part, self.model.dim)
-        stiffness = compressive_stiffness(part.traits.membrane, part.section, part.material)
-        if stiffness * -strain.min() <= EI * (np.pi / part.length) ** 2:  # not even in one wave along the cable
-            return np.zeros(strain.shape)
-        N = stiffness * np.maximum(-strain, 0.0)
-        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # of a rope without stiffness
-            k = np.clip(np.nan_to_num(np.sqrt(N / (2 * EI)), posinf=np.inf), np.pi / part.length,
-                        np.pi / cable.mesh.lengths)
-            return np.asarray(np.nan_to_num(np.sqrt(np.maximum(k**2 * (N - EI * k**2), 0.0) / mass)))
-
     def _of_joint(self, k: int, joint: JointModel, rows: dict[str, np.ndarray]) -> np.ndarray:
         """Return (times, 1): the larger rate in 1/s at which a body at one of its ends falls over."""
         on_b = joint_state(joint, outputs_by_name("joint", rows["joint"][:, k]))["force"]
@@ -115,13 +134,14 @@ class Sensitivity(Note):
         return found
 
 
-def sensitive(engine: Engine, settings: RunSettings, found: Sensitivity) -> list[str]:
+def sensitive(engine: Engine, settings: RunSettings, found: Sensitivity | None) -> list[str]:
     """Return a note where the errors of the steps, which grow in the motion, may become more than is allowed."""
-    exponent, where, since = found.worst
+    if found is None or (worst := found.worst)[0] < MIN_GROWTH_EXPONENT or not engine.moves:
+        return []
+    exponent, where, since = worst
     total = engine.statistics["sum_of_local_error_estimates_m"]
     fixed, motion, allowed = settings.step is not None, engine.controlled_motion, allowed_error(engine, settings)
-    if not (engine.moves and exponent >= MIN_GROWTH_EXPONENT
-            and total * np.exp(min(exponent, SATURATED_EXPONENT)) > ERROR_REPORT_RATIO * allowed):
+    if not total * np.exp(min(exponent, SATURATED_EXPONENT)) > ERROR_REPORT_RATIO * allowed:
         return []
     grown = total * np.exp(min(exponent, MAX_REPORTED_EXPONENT))
     may = f"{min(grown / motion, 1.0):.1g} of the largest motion, or more" if fixed else _times(grown / allowed)

@@ -38,6 +38,8 @@ class SlackMotion(Note):
     run.
     """
 
+    measures = ("cables",)
+
     def prepare(self) -> None:
         """Select the cables that can become slack."""
         self.cables = [cable for cable in self.model.cables
@@ -66,13 +68,17 @@ def _positions(model: Model, q: np.ndarray) -> np.ndarray:
     return np.concatenate([*(cable.positions(q) for cable in model.cables), *bodies])
 
 
-def grown(engine: Engine, settings: RunSettings, seen: SlackMotion, again: Callable[[RunSettings], Rows]) -> list[str]:
+def grown(engine: Engine, settings: RunSettings, seen: SlackMotion | None,
+          again: Callable[[RunSettings], Rows]) -> list[str]:
     """Return a note where errors of a motion with slack cables grow beyond the allowed one.
 
     again: runs the scene with other settings, and returns its rows.
     """
-    begin, times = seen.found.get("slack"), np.array(seen.found.get("times", []))
-    if begin is None or not engine.moves or len(times) < STORED_INTERVALS / 2 or settings.quantities:
+    begin = None if seen is None else seen.found.get("slack")
+    if seen is None or begin is None or not engine.moves or settings.quantities:
+        return []
+    times = np.array(seen.found["times"])
+    if len(times) < STORED_INTERVALS / 2:
         return []
     here = np.flatnonzero(times > begin)
     if len(here) < 4:

@@ -17,6 +17,8 @@ class SlackRopes(Note):
     rows with compression in turn, the present one and the largest.
     """
 
+    measures = ("sheaves",)
+
     def see(self, rows: Rows) -> None:
         """Measure further output rows."""
         if not self.model.sheaves:

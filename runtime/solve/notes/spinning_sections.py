@@ -25,6 +25,8 @@ LAW = "structural"
 class SpinningSections(Note):
     """The largest N (a L)²/GJ of each thin beam, and its time in s."""
 
+    measures = ("cables",)
+
     def prepare(self) -> None:
         """Select the parts to measure."""
         self._cables = {cable.name: cable for cable in self.model.cables

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...engine import Engine
+from ...engine import Engine, middle_deflections
 from ...model.model import CableModel, Model
 from ...parts.section_stiffness import compressive_stiffness
 from ..linear.condensation import condensed
@@ -25,6 +25,8 @@ class StraightStruts(Note):
     """Whether each cable is straight in the last row; of those that were perfectly straight at two consecutive output
     times the largest compression in N, with its time in s, the coordinates and the slides' arc-lengths.
     """
+
+    measures = ("cables",)
 
     def see(self, rows: Rows) -> None:
         """Measure further output rows."""
@@ -72,10 +74,7 @@ def _straight(r: np.ndarray, before: bool) -> np.ndarray:
 
     The middle node excludes most states; all nodes are compared in the others only.
     """
-    chord, middle = r[:, -1] - r[:, 0], r[:, r.shape[1] // 2] - r[:, 0]
-    square, other, product = (np.add.reduce(each, axis=1) for each in (chord * chord, middle * middle, middle * chord))
-    deflection = other * square - product**2  # squared, times square
-    straight = ~(deflection > MIN_SQUARED_DEFLECTION * square**2)
+    straight = ~(middle_deflections(r) > MIN_SQUARED_DEFLECTION)
     if not straight.any():
         return np.asarray(straight)
     beside = np.ones(len(r), dtype=bool)  # the last time is compared with the row to come

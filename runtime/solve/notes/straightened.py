@@ -34,6 +34,8 @@ class Straightened(Note):
     curvature, the time in s until which they are summed, and the smallest ratio of its curvature to the drawn one.
     """
 
+    measures = ("cables",)
+
     def prepare(self) -> None:
         """Select the cables that are drawn curved, with their curvatures and stiffness."""
         self._cables = []

@@ -16,6 +16,7 @@ KINDS = "contact", "hard_contact"
 class SurfaceEnds(Note):
     """The largest distance in m beyond the ends of its surface at which each contact acts."""
 
+    measures = ("contacts", "hard_contacts")
     assesses_rest = True
 
     def see_steps(self, engine: Engine) -> None:

@@ -23,6 +23,8 @@ class NormalForces(Note):
     output times, and the last force in N.
     """
 
+    measures = ("slides",)
+
     def prepare(self) -> None:
         """Select the parts to measure."""
         self._slides = [(k, slide.name) for k, slide in enumerate(self.model.slides)
@@ -50,19 +52,19 @@ def _has_friction(scene: SceneData, name: str) -> bool:
     return friction is not None and bool(friction.coefficient or friction.rolling)
 
 
-def uncontrolled_errors(scene: SceneData, engine: Engine, settings: RunSettings, turns: FastTurns,
-                        forces: NormalForces) -> list[str]:
+def uncontrolled_errors(scene: SceneData, engine: Engine, settings: RunSettings, turns: FastTurns | None,
+                        forces: NormalForces | None) -> list[str]:
     """Return a note where the steps of "genalpha" or "radau" were chosen without errors that may be large."""
     if settings.step is not None or not engine.moves:
         return []
     if engine.integrator == "radau":
-        return _of_radau(forces.vibrating)
+        return [] if forces is None else _of_radau(forces.vibrating)
     return _of_genalpha(scene, engine, settings, turns) if engine.integrator == "genalpha" else []
 
 
-def _of_genalpha(scene: SceneData, engine: Engine, settings: RunSettings, turns: FastTurns) -> list[str]:
+def _of_genalpha(scene: SceneData, engine: Engine, settings: RunSettings, turns: FastTurns | None) -> list[str]:
     """Friction, bodies that turn fast, slides that outrun the waves of their cable."""
-    fast = turns.uncontrolled(engine.statistics["steps"], settings.tol)
+    fast = [] if turns is None else turns.uncontrolled(engine.statistics["steps"], settings.tol)
     errors = [*(f'the friction of slide "{name}"' for name in scene.slides if _has_friction(scene, name)),
               *(f'how fast body "{name}" turns' for name in fast),
               *(f'the shock before slide "{name}", which is faster than waves in its cable'
