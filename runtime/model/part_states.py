@@ -112,6 +112,8 @@ def part_states(model: Model, scene: SceneData, at: States, alone: str | None = 
                                                                             at.a))
             if body.modes:
                 modal[body.name] = model.results(body.name, modal_state(model, body, state, at.q, at.v))
+    if alone is not None and (cables or bodies):  # a label belongs to one part
+        return PartStates(cables, modal, {"bodies": bodies})
     connections = {group: {label: model.results(label, values) for label, values in of.items() if asked(label)}
                    for group, of in _connections(model, scene, at, asked).items()}
     return PartStates(cables, modal, {"bodies": bodies, **connections})
