@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
-
-import numpy as np
 
 from ..parts.cable import Cable
 from ..parts.material import Material
@@ -37,6 +36,8 @@ def _surfaces(scene: SceneData) -> Iterator[str]:
 
 
 def _origins(scene: SceneData) -> Iterator[str]:
+    if not scene.contacts:
+        return
     shaped = {name for name, body in scene.bodies.items() if isinstance(getattr(body, "shape", None), Solid)}
     shaped |= {surface.on for surface in scene.surfaces.values() if surface.on}
     yield from (f"{contact.where} acts at the origin of \"{contact.a}\" alone, not on the surface of that "
@@ -46,7 +47,7 @@ def _origins(scene: SceneData) -> Iterator[str]:
 
 
 def _gravity(scene: SceneData) -> Iterator[str]:
-    size = float(np.linalg.norm(scene.gravity))
+    size = math.hypot(*scene.gravity)
     if size > GRAVITY:
         yield f"gravity is {show(size, 'm/s²')}: is it in m/s², and are all lengths in m?"
 

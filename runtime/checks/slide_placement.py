@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..errors import SceneError
@@ -153,7 +155,7 @@ def _check_drive(slide: Slide, line: Line) -> None:
 
 def _gap(scene: SceneData, slide: Slide, line: Line) -> float:
     """Return the distance in m from the rider's point to its place on the cable or rope."""
-    return float(np.linalg.norm(point_of(scene, slide.rider) - line.point(slide.arc_length)))
+    return math.dist(point_of(scene, slide.rider).tolist(), line.point(slide.arc_length).tolist())
 
 
 def _away(scene: SceneData, slide: Slide, line: Line, gap: float) -> str:

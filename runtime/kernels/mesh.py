@@ -80,7 +80,7 @@ class Mesh:
         """Return the elements (...) at arc-lengths s (...); at a node the element that begins there."""
         s = np.asarray(s, dtype=float)
         found = s // self.lengths[0] if self.given is None else np.searchsorted(self.given, s, side="right") - 1
-        return np.clip(found, 0, self.n_elements - 1).astype(int)
+        return np.asarray(np.minimum(np.maximum(found, 0), self.n_elements - 1)).astype(int)
 
     def nearest_node(self, s: ArrayLike) -> np.ndarray:
         """Return the numbers (...) of the nodes nearest to arc-lengths s (...)."""

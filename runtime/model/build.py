@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..kernels.libraries import tables_of
@@ -44,8 +46,8 @@ def build(scene: SceneData, supplied: bool = False) -> Model:
     couplings = [model for kind in COUPLINGS for model in kind.models(builder)]
     n_extra, n_multipliers = number(couplings)
     n_of_bodies = sum(dofs_of(body, dim) for body in bodies)
-    is_free = _joined(*(~rope.fixed for rope in ropes), np.ones(n_of_bodies)).astype(bool)
-    beside_cables = np.where(is_free, reduction.n_unknowns + np.cumsum(is_free) - 1, -1)
+    is_free = np.concatenate([*(~rope.fixed for rope in ropes), np.ones(n_of_bodies, dtype=bool)])
+    beside_cables = np.where(is_free, reduction.n_unknowns + is_free.cumsum() - 1, -1)
     numbering = reduction.numbering
     model = Model(
         dim, cables, ropes, bodies, couplings, builder.signals,
@@ -90,5 +92,5 @@ def _joined(*arrays: np.ndarray) -> np.ndarray:
 
 def _nodes(cable: CableModel, where: str, vectors: np.ndarray) -> list[Node]:
     """Return the nodes of a cable, with its nodal vectors (nodes, vectors, dim) as drawn."""
-    size = int(np.prod(cable.shape[1:]))
+    size = math.prod(cable.shape[1:])
     return [Node(where, cable.vectors, cable.first + k * size, each) for k, each in enumerate(vectors)]

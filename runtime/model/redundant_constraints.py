@@ -214,6 +214,8 @@ def joints_in_loops(model: Model) -> list[bool]:
 
     Equations of a joint in no loop are independent of all others.
     """
+    if not model.joints:
+        return []
     edges = [(joint.attachments[0].body + 1, joint.attachments[1].body + 1) for joint in model.joints]
     riders = [(0, slide.rider.body + 1) for slide in model.slides]
     cut = bridges(len(model.bodies) + 1, [*edges, *riders])

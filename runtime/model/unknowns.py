@@ -73,6 +73,8 @@ def as_supports_leave(asked: np.ndarray, unknown_of_dof: np.ndarray, combination
     asked: the requested changes (n,), of which those of the unknowns count; the last one of dofs that share an unknown.
     unknown_of_dof, combinations: as in `Reduction`.
     """
+    if not asked.any():
+        return np.zeros(len(asked))
     free, tied = unknown_of_dof >= 0, unknown_of_dof < -1
     unknowns = np.zeros(max(unknown_of_dof.max(initial=-1), combinations.unknown.max(initial=-1)) + 1)
     unknowns[unknown_of_dof[free]] = asked[free]
@@ -217,15 +219,16 @@ class Supports:
         """
         unknown = np.ones(n_dof, dtype=bool)
         unknown[list(self.rows)] = False
-        drawn = np.where(unknown, np.cumsum(unknown) - 1, -1)
-        n = int(unknown.sum())
+        free = unknown.nonzero()[0]
+        n, drawn = len(free), np.full(n_dof, -1)
+        drawn[free] = np.arange(n)
         combined = {dof: row for dof, row in self.rows.items() if row.free}
         if any(row.prescribed for row in combined.values()):
             raise SceneError("scene", "a tie joins a node that moves as prescribed to one that is partly free",
                              "prescribe displacement and rotation there, or tie with rotation = \"free\"")
         numbering = self._numbering(drawn, combined, elements, attached)
-        number = numbering.number
-        unknown_of_dof = np.where(unknown, number[drawn], -1) if n else drawn
+        unknown_of_dof = drawn.copy()
+        unknown_of_dof[free] = numbering.number
         rows: list[dict[int, float]] = []
         for dof, row in sorted(combined.items()):
             if list(row.free.values()) == [1.0]:
@@ -234,7 +237,7 @@ class Supports:
             unknown_of_dof[dof] = -2 - len(rows)
             rows.append({int(unknown_of_dof[of]): factor for of, factor in row.free.items()})
         prescribed = [(dof, part) for dof, row in self.rows.items() for part in row.prescribed]
-        return Reduction(unknown_of_dof.astype(int), Combinations.of(rows), n, numbering, prescribed)
+        return Reduction(unknown_of_dof, Combinations.of(rows), n, numbering, prescribed)
 
     def _numbering(self, drawn: np.ndarray, combined: dict[int, Row], elements: np.ndarray,
                    attached: np.ndarray) -> Numbering:

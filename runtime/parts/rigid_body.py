@@ -21,14 +21,13 @@ def _inertia(value: Any) -> Matrix:
 
 
 def _check_inertia(matrix: np.ndarray) -> None:
-    diagonal = matrix.diagonal()
-    is_diagonal = np.count_nonzero(matrix) == np.count_nonzero(diagonal)
-    small, middle, large = sorted(diagonal.tolist()) if is_diagonal else np.linalg.eigvalsh(matrix).tolist()
-    shown = show((small, middle, large), "kg m²")
+    (xx, xy, xz), (_, yy, yz), (_, _, zz) = matrix.tolist()
+    small, middle, large = np.linalg.eigvalsh(matrix).tolist() if xy or xz or yz else sorted((xx, yy, zz))
     if not small > 0:
-        raise ValueError(f"must be positive, got the principal moments {shown}")
+        raise ValueError(f"must be positive, got the principal moments {show((small, middle, large), 'kg m²')}")
     if large > (small + middle) * (1 + LENGTH_TOLERANCE):
-        raise ValueError(f"is not that of a body: no principal moment exceeds the sum of the others, got {shown}")
+        raise ValueError("is not that of a body: no principal moment exceeds the sum of the others, got "
+                         f"{show((small, middle, large), 'kg m²')}")
 
 
 def unit_quaternion(value: Any) -> Quaternion:

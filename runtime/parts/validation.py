@@ -124,7 +124,8 @@ def symmetric(value: Any, unit: str, check: Callable[[np.ndarray], None]) -> Mat
         if not (np.abs(matrix - matrix.T) <= 1e-12 * np.abs(matrix).max()).all():
             raise ValueError(f"must be symmetric, got {matrix.tolist()}")
     else:
-        matrix = np.diag(vector(value, unit))
+        xx, yy, zz = vector(value, unit)
+        matrix = np.array([[xx, 0.0, 0.0], [0.0, yy, 0.0], [0.0, 0.0, zz]])
     check(matrix)
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = matrix.tolist()
     return (xx, xy, xz), (yx, yy, yz), (zx, zy, zz)

@@ -83,21 +83,51 @@ def chord_lengths(const double[:, :, :] r, nodes=None):
     return found
 
 
-def middle_deflections(const double[:, :, :] r):
-    """Return (T,): the squared distance of the middle node from the line through the first and the last one, over the
-    squared distance of these, at r (T, nodes, dim); NaN where that is zero.
+def straight_rows(const double[:, :, :] r, double most, bint before):
+    """Return (T,): whether the middle node lies near the line from the first to the last one, at r (T, nodes, dim), in
+    two rows in turn; before: in the row before the first one. The last one counts beside the row to come.
+
+    most: the squared distance over that of the first and the last one; where that is zero, a row counts.
     """
     cdef Py_ssize_t rows = r.shape[0], last = r.shape[1] - 1, middle = r.shape[1] // 2, t, d
     cdef double square, other, product, chord, arm
+    cdef bint here
+    found = np.zeros(rows, dtype=bool)
+    cdef char[::1] straight = found.view(np.int8)
+    for t in range(rows):
+        square = other = product = 0.0
+        for d in range(r.shape[2]):
+            chord, arm = r[t, last, d] - r[t, 0, d], r[t, middle, d] - r[t, 0, d]
+            square, other, product = square + chord * chord, other + arm * arm, product + arm * chord
+        here = not other * square - product * product > most * square * square
+        if here and (before or t == rows - 1):
+            straight[t] = True
+        if here and before and t > 0:
+            straight[t - 1] = True
+        before = here
+    return found
+
+
+def quadratic_forms(const double[:, :, :] m, const double[:, :, :, :] nodal):
+    """Return (T,): half the sums of e m e over the elements of a cable with nodal vectors (T, nodes, vectors, dim), e
+    those of an element; m (1 or elements, vectors of both nodes, the same).
+    """
+    cdef Py_ssize_t rows = nodal.shape[0], n = nodal.shape[1] - 1, vectors = nodal.shape[2], t, e, a, b, d, own
+    cdef double value
+    if not ((m.shape[0] == 1 or m.shape[0] == n) and m.shape[1] == m.shape[2] == 2 * vectors):
+        raise ValueError("the shapes of matrix and vectors differ")
     found = np.empty(rows)
-    cdef double[::1] deflections = found
-    with nogil:
-        for t in range(rows):
-            square = other = product = 0.0
-            for d in range(r.shape[2]):
-                chord, arm = r[t, last, d] - r[t, 0, d], r[t, middle, d] - r[t, 0, d]
-                square, other, product = square + chord * chord, other + arm * arm, product + arm * chord
-            deflections[t] = (other * square - product * product) / (square * square) if square > 0.0 else NAN
+    cdef double[::1] sums = found
+    for t in range(rows):
+        value = 0.0
+        for e in range(n):
+            own = e if m.shape[0] > 1 else 0
+            for a in range(2 * vectors):
+                for b in range(2 * vectors):
+                    for d in range(nodal.shape[3]):
+                        value = value + m[own, a, b] * (nodal[t, e + a // vectors, a % vectors, d]
+                                                        * nodal[t, e + b // vectors, b % vectors, d])
+        sums[t] = 0.5 * value
     return found
 
 

@@ -318,6 +318,8 @@ def _broken_velocities(model: Model, change: np.ndarray, given: Container[str]) 
     given: names of a state to start from. A rope in space whose rates are not among them starts with those of a rope
     without sag: the start changes them, and those of its bodies a little.
     """
+    if not change.any():
+        return []
     counted, tolerance = model.weight.copy(), 1e-9  # rates of slopes and turns as those of points
     for rope in model.ropes:
         if rope.part.dim == 3 and f"{rope.part.name}.coordinate_rates" not in given:

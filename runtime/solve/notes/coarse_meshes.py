@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...engine import chord_lengths, moments_along, tension_work
+from ...engine import chord_lengths, moments_along, quadratic_forms, tension_work
 from ...kernels.mesh import Mesh
 from ...model.middle_strain import gauss_rule, strains_at
 from ...model.model import CableModel, Model
@@ -52,6 +52,7 @@ class _Strains:
         self.cable, self.part = cable, scene.cables[cable.name]
         self.EA, self.EI, *_ = LineStiffness.of(self.part, model.dim)
         self.h = cable.mesh.all_lengths
+        self.half_stiffness = 0.5 * self.EA * self.h
         self.supported = sorted(self.part.node(each.s) for each in scene.supports if each.cable == cable.name)
         self.is_slack_in_compression = self.part.traits.membrane == "tension_only"
         if self.part.is_curved:
@@ -75,7 +76,7 @@ class _Strains:
         if self.is_slack_in_compression:
             np.maximum(strain, 0.0, out=strain)
         found = moments_along(strain, STRAIN_POSITIONS, STRAIN_WEIGHTS)
-        found[2] *= 0.5 * self.EA * self.h
+        found[2] *= self.half_stiffness
         return found
 
     def bending(self, q: np.ndarray, square: np.ndarray) -> np.ndarray:
@@ -89,12 +90,12 @@ class _Strains:
         else:
             h, A = np.broadcast_to(h, len(self.h)), np.broadcast_to(A, (len(self.h), A.shape[1]))
             whole = np.array([energy.rows(len(self.h), h, each, A) for each in e])
-        return np.asarray(np.maximum(whole.reshape(len(e), -1).sum(axis=1) - 0.5 * self.EA * square @ self.h, 0.0))
+        bent = np.add.reduce(whole.reshape(len(e), -1), axis=1) - square @ self.half_stiffness
+        return np.asarray(np.maximum(bent, 0.0))
 
     def motion(self, v: np.ndarray) -> np.ndarray:
         """Return (T,): the kinetic energy at rates v (T, n), in J."""
-        e = element_coordinates(self.cable, v)
-        return np.asarray(0.5 * np.sum(e * (self.cable.m @ e), axis=(1, 2, 3)))
+        return quadratic_forms(self.cable.m, self.cable.nodal(v))
 
 
 class _Line:

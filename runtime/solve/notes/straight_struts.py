@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...engine import Engine, middle_deflections
+from ...engine import Engine, straight_rows
 from ...model.model import CableModel, Model
 from ...parts.section_stiffness import compressive_stiffness
 from ..linear.condensation import condensed
@@ -74,17 +74,10 @@ def _straight(r: np.ndarray, before: bool) -> np.ndarray:
 
     The middle node excludes most states; all nodes are compared in the others only.
     """
-    straight = ~(middle_deflections(r) > MIN_SQUARED_DEFLECTION)
-    if not straight.any():
-        return np.asarray(straight)
-    beside = np.ones(len(r), dtype=bool)  # the last time is compared with the row to come
-    beside[:-1] = straight[1:]
-    beside[1:] |= straight[:-1]
-    beside[0] |= before
-    straight &= beside
+    straight = straight_rows(r, MIN_SQUARED_DEFLECTION, before)
     if straight.any():
         straight[straight] = _on_line(r[straight])
-    return np.asarray(straight)
+    return straight
 
 
 def _on_line(r: np.ndarray) -> np.ndarray:
