@@ -302,7 +302,7 @@ cdef class Engine(Report):
         cdef int status = fu_start(run)
         if status:
             return STATUS[status], np.zeros(m.n_dof)
-        return None, np.array([run.before[i] for i in range(m.n_dof)])
+        return None, np.asarray(<double[:m.n_dof]>run.before).copy() if m.n_dof else np.zeros(0)
 
     def _outputs(self, str kind, output):
         """Return the outputs of couplings of a kind in rows of output: a view, (rows, couplings, numbers of one)."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 
 import numpy as np
@@ -58,8 +59,10 @@ def check_scene(scene: SceneData) -> None:
         if isinstance(body, ModalBody) and (massless := body.shape.indefinite(scene.dim)):
             raise SceneError(body.where, f"its mass matrix is not positive definite: {massless}",
                              "leave such a mode out, or give masses off the line that the others are on")
+    riders = Counter(slide.body for slide in scene.slides.values())
     for slide in scene.slides.values():
-        check_on_cable(scene, slide)
+        if riders[slide.body] > 1 or slide.along in scene.ropes:
+            check_on_cable(scene, slide)
 
 
 def check_start_as_drawn(scene: SceneData) -> None:

@@ -1,7 +1,7 @@
 """Cables, and the checks of their shape, mesh, law and section."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from pydantic import model_validator
@@ -145,6 +145,12 @@ class Cable(DrawnCable, CableFields):
             made._check_drawing()
         except ValueError as error:
             raise SceneError(self.where, *error.args) from None
+        return made
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Return a copy with other values of fields; its shape follows from them."""
+        made = super().model_copy(update=update, deep=deep)
+        vars(made).pop("_shape", None)
         return made
 
     def hanging_through(self, points: Iterable[tuple[float, ...]]) -> "Cable":

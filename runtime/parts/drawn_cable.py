@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -33,7 +34,7 @@ MAX_ITERATIONS = 30
 class DrawnCable(Fields):
     """Base of a cable: its shape, nodes and nodal vectors."""
 
-    @property
+    @cached_property
     def _shape(self) -> curves.Line | curves.Spline:
         return curves.shape_through(self.drawn_through)
 

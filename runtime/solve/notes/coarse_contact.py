@@ -32,7 +32,7 @@ class _LongElements(NamedTuple):
 class CoarseContact(Note):
     """The largest distance in m of the contact points of an element that came near a surface and is too long for it."""
 
-    measures = ("contacts",)
+    measures = (ContactModel,)
     assesses_rest = True
 
     def prepare(self) -> None:

@@ -177,7 +177,7 @@ class CoarseMeshes(Note):
     measure, and of the tension of its elements, see `_Line.of`.
     """
 
-    measures = ("cables",)
+    measures = (CableModel,)
     assesses_rest, row_interval = True, ROW_INTERVAL
 
     def prepare(self) -> None:

@@ -58,7 +58,7 @@ class CoarseSlides(Note):
     and of the tension in N, and the length in m of the longest element.
     """
 
-    measures = ("slides",)
+    measures = (SlideModel,)
     assesses_rest, row_interval = True, ROW_INTERVAL
 
     def see(self, rows: Rows) -> None:

@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...model.attachments import AttachmentModel
+from ...model.joints import JointModel
+from ...model.point_forces import PointForceModel
 from ...model.states import attachment_points
 from ...parts.validation import show
 from .note import Note, Rows
@@ -29,7 +31,7 @@ class _Directed(NamedTuple):
 class CoincidentPoints(Note):
     """The first time in s at which the points of each spring or distance joint coincided, and their position in m."""
 
-    measures = ("point_forces", "joints")
+    measures = (PointForceModel, JointModel)
 
     def prepare(self) -> None:
         """Select the parts to measure."""

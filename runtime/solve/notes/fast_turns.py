@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ...base.rotations import sizes
+from ...model.model import BodyModel
 from .note import Note, Rows, intervals
 
 MAX_TURN_PER_STEP = 1.0
@@ -17,7 +18,7 @@ class FastTurns(Note):
     power of its angular velocity in rad³/s², and the end of that in s.
     """
 
-    measures = ("bodies",)
+    measures = (BodyModel,)
 
     def see(self, rows: Rows) -> None:
         """Measure further output rows."""

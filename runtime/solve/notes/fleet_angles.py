@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...engine import outputs_by_name
+from ...model.rope_model import RopeModel
 from ...model.taut_ropes import TautPointModel
 from ...parts.validation import show
 from .note import Note, Rows
@@ -13,7 +14,7 @@ from .note import Note, Rows
 class FleetAngles(Note):
     """The largest fleet angle of each sheave and drum of a rope in space, in rad, and its time in s."""
 
-    measures = ("ropes",)
+    measures = (RopeModel,)
     assesses_rest = True
 
     def prepare(self) -> None:

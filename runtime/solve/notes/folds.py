@@ -38,7 +38,7 @@ class Folds(Note):
     Cables that give way in compression are left out: how they lie where they are slack is not known.
     """
 
-    measures = ("cables",)
+    measures = (CableModel,)
     assesses_rest = True
 
     def prepare(self) -> None:

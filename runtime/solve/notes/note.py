@@ -32,8 +32,8 @@ class Note:
     """Whether it assesses states of rest, too."""
     row_interval = 1
     """The note sees one in this number of output rows."""
-    measures: ClassVar[tuple[str, ...]]
-    """Lists of a model with the parts that it measures: without any of them there is no such note."""
+    measures: ClassVar[tuple[type, ...]]
+    """Classes of the parts of a model that it measures: without any of them there is no such note."""
 
     def __init__(self, scene: SceneData, model: Model, step: float = 0.0, duration: float = 1.0):
         """step: in s, 0 where tol chooses it; duration: of the run, in s."""

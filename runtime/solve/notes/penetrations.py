@@ -9,6 +9,7 @@ import numpy as np
 from ...checks.contact_placement import radius_of
 from ...engine import Engine, outputs_by_name
 from ...model.contacts import ContactModel, RopeContactModel
+from ...model.crossings import CrossingModel
 from .note import Note, Rows
 
 PENETRATION_LIMIT = 0.1
@@ -28,7 +29,7 @@ class _Limit(NamedTuple):
 class Penetrations(Note):
     """The largest penetration in m of each contact and crossing, also between output times."""
 
-    measures = ("contacts", "rope_contacts", "crossings")
+    measures = (ContactModel, RopeContactModel, CrossingModel)
     assesses_rest = True
 
     def prepare(self) -> None:

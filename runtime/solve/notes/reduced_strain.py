@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...model.middle_strain import gauss_rule, stretches
+from ...model.model import CableModel
 from ...parts.section_stiffness import STABILISATION, is_reduced
 from .note import Note, Rows
 
@@ -16,7 +17,7 @@ class ReducedStrain(Note):
     time in s.
     """
 
-    measures = ("cables",)
+    measures = (CableModel,)
     assesses_rest = True
 
     def prepare(self) -> None:

@@ -34,9 +34,6 @@ NOTES: tuple[type[Note], ...] = (
     CoincidentPoints, FastTurns, NormalForces, SpinningSections, Penetrations, SurfaceEnds, CoarseContact,
     FleetAngles, SlackRopes)
 
-MEASURED = {name for kind in NOTES for name in kind.measures}
-"""Lists of a model that notes measure."""
-
 N = TypeVar("N", bound=Note)
 
 
@@ -56,8 +53,8 @@ class _Thinned(dict[str, np.ndarray]):
 
 def _kinds_for(model: Model) -> list[type[Note]]:
     """Return the notes that have something to measure in a model."""
-    has = {name: bool(getattr(model, name)) for name in MEASURED}
-    return [kind for kind in NOTES if any([has[name] for name in kind.measures])]
+    present = {type(part) for part in (*model.cables, *model.ropes, *model.bodies, *model.couplings)}
+    return [kind for kind in NOTES if not present.isdisjoint(kind.measures)]
 
 
 class RowNotes:

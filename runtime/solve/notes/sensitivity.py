@@ -82,7 +82,7 @@ class Sensitivity(Note):
     Its note depends on the errors of the steps, see `sensitive`.
     """
 
-    measures = ("cables", "joints")
+    measures = (CableModel, JointModel)
 
     def prepare(self) -> None:
         """Select the joints about which a body can fall over, and find the stiffnesses of the cables."""

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...engine import SLACK_STRAIN, Engine
 from ...model.middle_strain import middle_strain
-from ...model.model import Model
+from ...model.model import CableModel, Model
 from ...parts.settings import RunSettings
 from .note import Note, Rows, allowed_error
 from .sensitivity import GROWTH_TEXT
@@ -38,7 +38,7 @@ class SlackMotion(Note):
     run.
     """
 
-    measures = ("cables",)
+    measures = (CableModel,)
 
     def prepare(self) -> None:
         """Select the cables that can become slack."""

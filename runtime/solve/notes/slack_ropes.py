@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...engine import outputs_by_name
+from ...model.rope_wheels import SheaveModel
 from ...parts.validation import show
 from .note import Note, Rows
 
@@ -17,7 +18,7 @@ class SlackRopes(Note):
     rows with compression in turn, the present one and the largest.
     """
 
-    measures = ("sheaves",)
+    measures = (SheaveModel,)
 
     def see(self, rows: Rows) -> None:
         """Measure further output rows."""

@@ -25,7 +25,7 @@ LAW = "structural"
 class SpinningSections(Note):
     """The largest N (a L)²/GJ of each thin beam, and its time in s."""
 
-    measures = ("cables",)
+    measures = (CableModel,)
 
     def prepare(self) -> None:
         """Select the parts to measure."""

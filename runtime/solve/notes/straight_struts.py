@@ -26,7 +26,7 @@ class StraightStruts(Note):
     times the largest compression in N, with its time in s, the coordinates and the slides' arc-lengths.
     """
 
-    measures = ("cables",)
+    measures = (CableModel,)
 
     def see(self, rows: Rows) -> None:
         """Measure further output rows."""

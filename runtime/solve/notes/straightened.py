@@ -34,7 +34,7 @@ class Straightened(Note):
     curvature, the time in s until which they are summed, and the smallest ratio of its curvature to the drawn one.
     """
 
-    measures = ("cables",)
+    measures = (CableModel,)
 
     def prepare(self) -> None:
         """Select the cables that are drawn curved, with their curvatures and stiffness."""

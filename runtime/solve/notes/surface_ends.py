@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...engine import Engine
+from ...model.contacts import ContactModel, HardContactModel
 from ...parts.solids import Cylinder
 from .note import Note, Rows
 
@@ -16,7 +17,7 @@ KINDS = "contact", "hard_contact"
 class SurfaceEnds(Note):
     """The largest distance in m beyond the ends of its surface at which each contact acts."""
 
-    measures = ("contacts", "hard_contacts")
+    measures = (ContactModel, HardContactModel)
     assesses_rest = True
 
     def see_steps(self, engine: Engine) -> None:

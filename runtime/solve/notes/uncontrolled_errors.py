@@ -6,6 +6,7 @@ import numpy as np
 
 from ...engine import Engine, outputs_by_name
 from ...integrators import stable_at
+from ...model.model import SlideModel
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
 from .fast_turns import FastTurns
@@ -23,7 +24,7 @@ class NormalForces(Note):
     output times, and the last force in N.
     """
 
-    measures = ("slides",)
+    measures = (SlideModel,)
 
     def prepare(self) -> None:
         """Select the parts to measure."""
