@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 
 import numpy as np
 
@@ -27,7 +28,8 @@ class Combinations:
         """Return the combinations with these coefficients by unknown, at least one in each row."""
         ordered = [sorted(row.items()) for row in rows]
         entries = [entry for row in ordered for entry in row]
-        return cls(np.cumsum([0, *map(len, ordered)]), np.array([of for of, _ in entries], dtype=int),
+        return cls(np.array([*accumulate(map(len, ordered), initial=0)]),
+                   np.array([of for of, _ in entries], dtype=int),
                    np.array([factor for _, factor in entries], dtype=float))
 
     def times(self, unknowns: np.ndarray) -> np.ndarray:

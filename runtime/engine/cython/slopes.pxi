@@ -1,5 +1,7 @@
 # Measures of many elements in many rows, for the notes on a run: NumPy takes ten times as long for few elements.
 
+@cython.boundscheck(False)  # the shapes are checked
+@cython.wraparound(False)
 def slope_lengths(const double[:, :, :] shapes, const double[:, :, :, :] first, const double[:, :, :, :] last):
     """Return (parts, T, n): lengths of the sums of the vectors of two nodes (T, n, vectors, dim), weighted by shapes
     (parts, 1 or n, vectors of both). Vectors without weight in all parts do not count, even if they are not finite.

@@ -22,6 +22,8 @@ def share_elements(engine: Engine, asked: int) -> list[str]:
     """Let threads share the work of a run, at most one per processor; return a message where there are fewer than
     asked.
     """
+    if asked == 1:
+        return []
     threads, why = asked, ""
     if asked > available():
         threads, why = available(), f"there are {available()} processors for this process"
