@@ -180,6 +180,14 @@ def test_a_distance_that_is_driven_to_nothing_is_named(integrator):
         scene.run(2.0, output_step=0.1, integrator=integrator, progress=False)
 
 
+def test_notes_are_those_of_the_parts_of_a_model():
+    """Each note names what it measures; a scene without that has no such note."""
+    scene = Scene(gravity=(0, 0, 0))
+    scene.rigid_body("A", mass=1.0, inertia=(1, 1, 1), position=(0, 0, 0))
+    assert {*RowNotes(scene, build(scene)).found["notes"]} == {"FastTurns"}
+    assert all(note.measures for note in NOTES)
+
+
 def test_the_list_of_notes_is_complete():
     """A note that is not in `row_notes.NOTES` would measure nothing."""
     for module in pkgutil.iter_modules(notes.__path__, f"{notes.__name__}."):
