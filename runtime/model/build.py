@@ -11,7 +11,7 @@ from ..parts.scene_data import SceneData
 from .attachments import ModelBuilder
 from .bodies import body_gravity, body_models, body_weights, configuration_of, dofs_of, velocity_of
 from .border import ACCELERATIONS, NEWTON, elimination
-from .cables import cable_gravity, cable_model, cable_rates, cable_weights, drawn_vectors, kept_cable, level_tied_slopes
+from .cables import arrays_of, cable_rates, level_tied_slopes
 from .coupling import number
 from .cutting import attached
 from .kinds import COUPLINGS
@@ -29,15 +29,15 @@ def build(scene: SceneData, supplied: bool = False) -> Model:
     """
     assert scene.plane is None, "a scene in another plane is laid into z = 0 first"
     dim, gravity = scene.dim, np.array(scene.gravity)[: scene.dim]
-    drawn, described = list(map(kept_cable, scene.cables.values())), list(scene.bodies.values())
+    drawn, described = list(map(arrays_of, scene.cables.values())), list(scene.bodies.values())
     cables: list[CableModel] = []
     n_flexible = 0
     for cable in drawn:
-        cables.append(cable_model(cable, n_flexible))
+        cables.append(cable.model(n_flexible))
         n_flexible = cables[-1].coordinates.stop
     ropes = rope_models(scene, n_flexible, supplied)
     bodies = body_models(scene, ropes[-1].coordinates.stop if ropes else n_flexible)
-    nodal = [drawn_vectors(cable, dim) for cable in drawn]
+    nodal = [cable.vectors[..., :dim].copy() for cable in drawn]
     level_tied_slopes(scene, nodal)
     nodes = {model.name: _nodes(model, scene.cables[model.name].where, vectors)
              for model, vectors in zip(cables, nodal, strict=True)}
@@ -57,9 +57,9 @@ def build(scene: SceneData, supplied: bool = False) -> Model:
                   *(configuration_of(body, dim) for body in described)),
         v=_joined(cable_rates(scene, reduction), *(0 * rope.q for rope in ropes),
                   *(velocity_of(body, dim) for body in described)),
-        weight=_joined(*map(cable_weights, drawn), *(rope.weight for rope in ropes),
+        weight=_joined(*(cable.weights for cable in drawn), *(rope.weight for rope in ropes),
                        *(body_weights(body, dim) for body in described)),
-        gravity=_joined(*(cable_gravity(cable, gravity) for cable in drawn),
+        gravity=_joined(*(cable.gravity(gravity) for cable in drawn),
                         *(0 * rope.q for rope in ropes),
                         *(body_gravity(body, gravity) for body in bodies)),
         unknown_of_dof=np.append(reduction.unknown_of_dof, beside_cables).astype(int),

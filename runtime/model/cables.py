@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -21,75 +20,81 @@ KEPT_CABLES, MAX_KEPT_ELEMENTS = 32, 1000
 """Number of cables whose arrays are kept for equal ones, as those of variants of a scene, and the most elements of one.
 """
 
-FORGET: list[Callable[[], None]] = []
-"""Functions that drop the kept arrays, for tests and timings."""
+
+class CableArrays:
+    """A cable, and the arrays of its model, each made once and read-only."""
+
+    def __init__(self, cable: Cable):
+        self.cable = cable
+        self._gravity: tuple[bytes, np.ndarray] | None = None
+
+    def model(self, first: int) -> CableModel:
+        """Return its model, whose coordinates begin at ``first``."""
+        cable = self.cable
+        vectors, material = cable.kind_of_element.nodal_vectors, cable.material
+        return CableModel(
+            cable.name, cable.element, cable.kernel_law, cable.mesh, first, material.damping_time,
+            material.mass_damping, self._mass, self._constants, (cable.elements + 1, len(vectors), cable.dim),
+            vectors, cable.library)
+
+    @cached_property
+    def _mass(self) -> np.ndarray:
+        """Return m of a `CableModel`."""
+        cable = self.cable
+        mass, moments = getattr(kernels_of(cable.library), f"{cable.element}_mass"), cable.section.mass_moments()
+        return _fixed(np.array([mass(length, cable.material.density, moments) for length in cable.mesh.lengths]))
+
+    @cached_property
+    def _constants(self) -> np.ndarray:
+        """Return A of a `CableModel`."""
+        return _fixed(constants(self.cable))
+
+    @cached_property
+    def vectors(self) -> np.ndarray:
+        """Return (nodes, vectors, 3): its nodal vectors."""
+        return _fixed(self.cable.nodal_vectors)
+
+    @cached_property
+    def weights(self) -> np.ndarray:
+        """Return the displacement of a point by a unit of each nodal vector: 1 for positions, lengths for slopes, those
+        of the longer element at the node.
+        """
+        cable = self.cable
+        area, iyy, izz = cable.section.moments()[:3]
+        across, lengths = np.sqrt([iyy / area, izz / area]), cable.mesh.lengths
+        vectors = cable.kind_of_element.nodal_vectors
+        if len(lengths) == 1:
+            return _fixed(np.repeat(np.tile(list(gauge(vectors, lengths[0], *across)), cable.elements + 1), cable.dim))
+        longer = np.maximum(np.append(lengths[0], lengths), np.append(lengths, lengths[-1]))
+        return _fixed(np.repeat([unit for length in longer for unit in gauge(vectors, length, *across)], cable.dim))
+
+    def gravity(self, gravity: np.ndarray) -> np.ndarray:
+        """Return (coordinates,): its generalised gravity."""
+        along, kept = gravity.tobytes(), self._gravity
+        if kept is None or kept[0] != along:
+            kept = self._gravity = along, _fixed(cable_gravity(self.cable, gravity))
+        return kept[1]
 
 
-@lru_cache(maxsize=KEPT_CABLES)
-def kept_cable(cable: Cable) -> Cable:
-    """Return the first of equal cables, which is found again without comparison of its entries."""
-    return cable
+def _fixed(array: np.ndarray) -> np.ndarray:
+    """Return an array, read-only."""
+    array.flags.writeable = False
+    return array
 
 
-FORGET.append(kept_cable.cache_clear)
-
-
-def _kept(arrays: Callable[..., np.ndarray]) -> Callable[..., np.ndarray]:
-    """Return a function of a cable, and of tuples, that makes an array, read-only, once for equal cables.
+def arrays_of(cable: Cable) -> CableArrays:
+    """Return the arrays of a cable, the same ones for equal cables.
 
     Elements of cables that are curved without stress have large arrays, each its own, which are not kept.
     """
-    @lru_cache(maxsize=KEPT_CABLES)
-    def kept(cable: Cable, *given: tuple[float, ...]) -> np.ndarray:
-        made = arrays(cable, *given)
-        made.flags.writeable = False
-        return made
-
-    FORGET.append(kept.cache_clear)
-
-    def of(cable: Cable, *given: tuple[float, ...]) -> np.ndarray:
-        return (kept if cable.elements <= MAX_KEPT_ELEMENTS and not cable.is_curved else arrays)(cable, *given)
-
-    return of
+    return (kept_arrays if cable.elements <= MAX_KEPT_ELEMENTS and not cable.is_curved else CableArrays)(cable)
 
 
-def cable_model(cable: Cable, first: int) -> CableModel:
-    """Return the model of a cable whose coordinates begin at ``first``."""
-    vectors = cable.kind_of_element.nodal_vectors
-    return CableModel(
-        cable.name, cable.element, cable.kernel_law, cable.mesh, first, cable.material.damping_time,
-        cable.material.mass_damping, _mass(cable), _constants(cable), (cable.elements + 1, len(vectors), cable.dim),
-        vectors, cable.library)
-
-
-@_kept
-def _mass(cable: Cable) -> np.ndarray:
-    """Return m of a `CableModel`."""
-    mass, moments = getattr(kernels_of(cable.library), f"{cable.element}_mass"), cable.section.mass_moments()
-    return np.array([mass(length, cable.material.density, moments) for length in cable.mesh.lengths])
-
-
-_constants = _kept(constants)
-
-
-@_kept
-def _nodal_vectors(cable: Cable) -> np.ndarray:
-    """Return its nodal vectors as drawn."""
-    return cable.nodal_vectors
-
-
-def drawn_vectors(cable: Cable, dim: int) -> np.ndarray:
-    """Return (nodes, vectors, dim): its nodal vectors as drawn."""
-    return _nodal_vectors(cable)[..., :dim].copy()
+kept_arrays = lru_cache(maxsize=KEPT_CABLES)(CableArrays)
 
 
 def cable_gravity(cable: Cable, gravity: np.ndarray) -> np.ndarray:
     """Return (coordinates,): generalised gravity of a cable."""
-    return _gravity(cable, tuple(gravity.tolist()))
-
-
-@_kept
-def _gravity(cable: Cable, gravity: tuple[float, ...]) -> np.ndarray:
     kernel, moments = getattr(kernels_of(cable.library), f"{cable.element}_gravity"), cable.section.mass_moments()
     vectors = len(cable.kind_of_element.nodal_vectors)
     each = np.array([kernel(length, cable.material.density, moments, gravity).reshape(2, vectors, cable.dim)
@@ -122,17 +127,3 @@ def cable_rates(scene: SceneData, reduction: Reduction) -> np.ndarray:
     """Return the rates of the cables' nodal vectors at the start, as the supports admit them."""
     asked = np.concatenate([*(cable.nodal_rates[..., : scene.dim].ravel() for cable in scene.cables.values()), []])
     return as_supports_leave(asked, reduction.unknown_of_dof, reduction.combinations)
-
-
-@_kept
-def cable_weights(cable: Cable) -> np.ndarray:
-    """Return the displacement of a point by a unit of each nodal vector: 1 for positions, lengths for slopes, those of
-    the longer element at the node.
-    """
-    area, iyy, izz = cable.section.moments()[:3]
-    across, lengths = np.sqrt([iyy / area, izz / area]), cable.mesh.lengths
-    vectors = cable.kind_of_element.nodal_vectors
-    if len(lengths) == 1:
-        return np.repeat(np.tile(list(gauge(vectors, lengths[0], *across)), cable.elements + 1), cable.dim)
-    longer = np.maximum(np.append(lengths[0], lengths), np.append(lengths, lengths[-1]))
-    return np.repeat([unit for length in longer for unit in gauge(vectors, length, *across)], cable.dim)

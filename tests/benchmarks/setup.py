@@ -28,7 +28,7 @@ from funicular.engine import Engine
 from funicular.integrators import Integrator
 from funicular.model.breakpoints import breakpoints
 from funicular.model.build import build
-from funicular.model.cables import FORGET
+from funicular.model.cables import kept_arrays
 from funicular.model.elimination import dense_beside, eliminated
 from funicular.model.fewest_operations import ordered
 from funicular.model.numbering import numbered_once
@@ -92,10 +92,8 @@ class Clock:
 
 def forget() -> None:
     """Forget the analysis of topologies and arrays of cables, so that the next scene is the first of its kind."""
-    for kept in (eliminated, dense_beside, ordered, numbered_once):
+    for kept in (eliminated, dense_beside, ordered, numbered_once, kept_arrays):
         kept.cache_clear()
-    for drop in FORGET:
-        drop()
 
 
 def set_up(make: Callable[[], Scene], clock: Clock | None = None) -> Engine:

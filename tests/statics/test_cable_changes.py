@@ -4,7 +4,7 @@ import funicular as fu
 import numpy as np
 import pytest
 from funicular.kernels.libraries import of_library
-from funicular.model.cables import cable_model
+from funicular.model.cables import arrays_of
 from funicular.parts.cable_laws import possible_laws
 from funicular.parts.in_plane import in_plane
 from funicular.solve.adjustment.cable_changes import Own, by_length, elastic_force, same_points
@@ -27,7 +27,7 @@ def cable_of(element, law, stretch, shape=None):
 
 def disturbed(cable, size):
     """Return the model of a cable, and its coordinates with perturbed vectors."""
-    model, random = cable_model(cable, 0), np.random.default_rng(1)
+    model, random = arrays_of(cable).model(0), np.random.default_rng(1)
     q = cable.nodal_vectors[..., : model.shape[2]]
     return model, (q + size * random.standard_normal(q.shape)).ravel()
 
@@ -42,7 +42,7 @@ def with_length(cable, model, q, ratio):
     """Return the forces on positions, and on slopes times the length, of a longer cable with unchanged positions."""
     factors = {"r_x": 1 / ratio, "r_xx": 1 / ratio**2}
     each = np.broadcast_to(np.array([[factors.get(name, 1.0)] for name in model.vectors]), model.shape).ravel()
-    longer = cable_model(cable.remade({"rest_length": ratio * cable.length}), 0)
+    longer = arrays_of(cable.remade({"rest_length": ratio * cable.length})).model(0)
     return each * elastic_force(longer, longer.A, each * q)
 
 

@@ -9,7 +9,7 @@ from functools import cache, partial
 import numpy as np
 
 from ...base.rotations import product, rotate, turned_by
-from ...model.cables import cable_model
+from ...model.cables import arrays_of
 from ...parts.modal_body import ModalBody
 from ...parts.rigid_body import RigidBody
 from ...parts.scene_data import SceneData
@@ -59,7 +59,7 @@ def _law(scene: SceneData, value: Callable[[str], np.ndarray],
     def forces(cable: str, s: np.ndarray) -> dict[str, np.ndarray]:
         part = scene.cables[cable]
         name = f"{cable}.nodal_vectors"
-        force, moment, axes, strain = constitutive(part, value(name), Cuts(cable_model(part, 0), s[None], True),
+        force, moment, axes, strain = constitutive(part, value(name), Cuts(arrays_of(part).model(0), s[None], True),
                                                    None if start is None else start(name))
         return {"force": force, "moment": moment} | components(part, force, moment, axes, strain)
 
