@@ -80,10 +80,11 @@ double fu_allow(fu_run *run, double h)
 {
     run->round_off = ROUND_OFF * fu_largest_length(run);
     const double scale = fmax(run->motion, run->least_motion);
-    /* Of the error permitted until t, relative to the motion until then, a step gets the part h/t: local errors then
-     * add up to at most tol times the logarithm of the times. With h/duration the first instants, with hardly any
-     * motion, would take most of the steps. For named quantities that holds only without rotations: these reach their
-     * size within a moment, and the error of a vibration then grows until the end. */
+    /* Of the error permitted until t, relative to the motion until then and at least to a part of the prescribed motion
+     * (run/start.c), a step gets the part h/t: local errors then add up to at most tol times the logarithm of the
+     * times. With h/duration the first instants, with hardly any motion, would take most of the steps. For named
+     * quantities that holds only without rotations: these reach their size within a moment, and the error of a
+     * vibration then grows until the end. */
     const int turns = run->controlled != run->model->weight && run->model->n_bodies;
     const double share =
         ERROR_SAFETY * h / (turns ? run->duration : fmax(run->now.t + h, FIRST_PERIOD * run->duration));

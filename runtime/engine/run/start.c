@@ -12,6 +12,9 @@
 #define REST_MOTION 1e-9 /* of the extent: largest motion of a scene at rest */
 /* of the scene's size: least motion to which errors are relative */
 #define MIN_MOTION 1e-6
+#define MOTION_SAMPLES 64 /* of prescribed motions over the run */
+/* of the largest motion that is prescribed: least motion; first errors, which may grow, stay small beside later ones */
+#define PRESCRIBED_MOTION_SHARE 0.01
 #define FIRST_PERIOD 1e-3 /* of the duration: until then the velocities at the start define the scale of motion */
 
 /* Starts the scheme at `now` with consistent velocities, projected on the joints if requested, and with accelerations
@@ -71,6 +74,24 @@ static int begin_state(fu_run *run)
     return FU_RUNNING;
 }
 
+/* Returns a motion of the dofs in the error of tol that signals prescribe between `now` and the end, m: at most the
+ * largest one. */
+static double prescribed_motion(fu_run *run)
+{
+    const fu_model *model = run->model;
+    double largest = 0.0;
+    memcpy(run->next.q, run->now.q, sizeof(double) * (size_t)model->n_q);
+    for (int sample = 1; model->n_motions && sample <= MOTION_SAMPLES; ++sample) {
+        run->next.t = run->now.t + (run->duration - run->now.t) * sample / MOTION_SAMPLES;
+        fu_prescribe(model, &run->next);
+        for (int k = 0; k < model->n_motions; ++k) {
+            const int dof = model->motions[k].dof;
+            largest = fmax(largest, run->controlled[dof] * fabs(run->next.q[dof] - run->now.q[dof]));
+        }
+    }
+    return largest;
+}
+
 /* Starts a run: computes the first state, records the first row; returns a status. run->before then has the change of
  * velocities by constraints. */
 int fu_start(fu_run *run)
@@ -96,9 +117,9 @@ int fu_start(fu_run *run)
         memset(now->a, 0, sizeof(double) * (size_t)model->n_dof);
     }
     /* tolerances are relative to the largest motion: at first, that of a thousandth of the duration, and never less
-     * than the unavoidable motion of a scene at rest */
+     * than the unavoidable motion of a scene at rest, and the motion that is prescribed */
     if (run->absolute_tol < 0.0) run->absolute_tol = MIN_MOTION * run->tol * run->size;
-    run->least_motion = REST_MOTION * run->extent;
+    run->least_motion = fmax(REST_MOTION * run->extent, PRESCRIBED_MOTION_SHARE * prescribed_motion(run));
     for (int i = 0; i < model->n_dof; ++i) {
         const double t = fmin(run->output_step, FIRST_PERIOD * run->duration);
         const double d = run->controlled[i] * (fabs(now->v[i]) * t + 0.5 * fabs(now->acceleration[i]) * t * t);
