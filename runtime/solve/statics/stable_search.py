@@ -61,14 +61,15 @@ def _search(problem: StaticProblem) -> Stability | None:
     """Do the same regardless of surfaces that cables lie on."""
     begin, passed = problem.keep(), None
     passed_at, problem.pushed = begin, False
-    if problem.settings.seek_stable and (stable := from_strings(problem, every=False)) is not None:
-        return stable
-    problem.restore(begin)
+    for start in (from_single_strings, from_strings) if problem.settings.seek_stable else ():
+        if (stable := start(problem, every=False)) is not None:
+            return stable
+        problem.restore(begin)
     if problem.newton():
         passed, passed_at = stability(problem), problem.keep()
         if not passed.unstable or not problem.settings.seek_stable:
             return passed
-    for descend in (from_strings, stiffen, relax) if problem.settings.seek_stable else (relax,):
+    for descend in (from_single_strings, from_strings, stiffen, relax) if problem.settings.seek_stable else (relax,):
         problem.restore(begin)
         if (stable := descend(problem)) is not None:
             if passed is not None:
@@ -83,6 +84,16 @@ def _report(problem: StaticProblem, passed: Stability) -> None:
     """Add the message of an unstable state that the search has passed."""
     problem.messages.append(f"Newton's method found a state of rest that is {passed}; the search went on to a stable "
                             f"one{BRANCH_CHOICE_REMEDY * problem.pushed}")
+
+
+def from_single_strings(problem: StaticProblem, every: bool = True) -> Stability | None:
+    """Find a stable state from cables alone on two supports in the shape of strings without bending stiffness, by
+    Newton's method; else None.
+    """
+    if not hang(problem, every, bending=False) or not problem.newton():
+        return None
+    found = stability(problem)
+    return None if found.unstable else found
 
 
 def from_strings(problem: StaticProblem, every: bool = True) -> Stability | None:

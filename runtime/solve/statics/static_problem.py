@@ -124,7 +124,7 @@ class StaticProblem(StaticState):
         self.point_entries = _point_entries(self.model)
         self.slack: dict[str, float] = {}  # slack fractions of cables as strings
         self.string_nodes: Any = None  # nodes of cables as those of strings, when first needed
-        self.last_strings: dict[bytes, Any] = {}  # of groups of cables: the last forces on strings, and their rest
+        self.last_strings: dict[tuple[bytes, bool], Any] = {}  # of groups: the last forces on strings, and rest
         self.held = False  # whether short steps have held cables on surfaces
         self.pushed = False  # whether a push off an unstable branch had no preferred direction
         self.left_route = ""  # where a rope left its route in the states that the search tried, in words

@@ -38,7 +38,7 @@ class StringNodes:
     r_x. held (nodes,): those that joints and springs hold to the ground or to bodies, which stay as drawn. acted_on:
     cables under other actions than supports, ties, loads, fluids, fixed planes, and joints to ground and bodies;
     joined: cables on which other cables act, except by ties; in_contact: cables in contact with what strings would pass
-    through.
+    through; above_plane: with fixed planes or height fields.
     """
 
     def __init__(self, model: Model):
@@ -90,6 +90,17 @@ class StringNodes:
                     and (self.joined | self.in_contact).isdisjoint(group.tolist())
                     and all(STRING_VECTORS.issuperset(self.model.cables[c].vectors) for c in group))
 
+    def is_alone(self, group: np.ndarray, q: np.ndarray) -> bool:
+        """Return whether a group is one cable on two supports, which hold the positions of its ends and no direction,
+        with no plane below it.
+        """
+        if len(group) > 1 or group[0] in self.above_plane:
+            return False
+        own = self.of(group)
+        fixed = self.fixed[own]
+        return bool(fixed[[0, -1]].all() and not fixed[1:-1].any() and np.array_equal(self.string_node[own], own)
+                    and not self.clamped(group, q))
+
     def smooth_ties(self, group: np.ndarray) -> list[SmoothTie]:
         """Return the ties of a group that join only two ends of cables, with one direction."""
         own = self.of(group)
@@ -130,8 +141,10 @@ class StringNodes:
     def _hold(self) -> None:
         """Find the actions of couplings on cables except loads, fluids and fixed planes."""
         self.held = np.zeros(len(self.cable), dtype=bool)
-        self.acted_on, self.joined, self.in_contact = set[int](), set[int](), set[int]()
+        self.acted_on, self.joined, self.in_contact, self.above_plane = set[int](), set[int](), set[int](), set[int]()
         for coupling in self.model.couplings:
+            if rests(coupling):
+                self.above_plane |= _cables_of(coupling)
             if isinstance(coupling, AnyLoadModel | DragModel) or rests(coupling):
                 continue
             cables = _cables_of(coupling)

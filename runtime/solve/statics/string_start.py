@@ -6,6 +6,8 @@ it forces of slack lines drawn straight were up to 280 times too large.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
@@ -16,6 +18,7 @@ from ...model.drags import DragModel
 from ...model.loads import GAUSS, DeadLoadModel
 from ...model.model import Model
 from ...model.unknowns import as_supports_leave
+from .single_string import rest_between
 from .static_problem import StaticProblem
 from .string_nodes import SmoothTie, StringNodes, rests
 from .string_vectors import slopes, vectors_along
@@ -35,13 +38,14 @@ STRAIGHTNESS_TOLERANCE = 1e-9
 """Distance of nodes from a line, and slack of a cable, that count as zero, as a fraction of the length."""
 
 
-def hang(problem: StaticProblem, every: bool) -> bool:
+def hang(problem: StaticProblem, every: bool, bending: bool = True) -> bool:
     """Put cables into the shape of strings at rest under the present load; return whether there are any.
 
     every: from any state, also cables that are drawn bent or taut, or that carry actions unknown to `StringNodes`;
     False: only where the search begins, so that load steps stay on their path, and without such cables, for which the
-    drawn shape is as good a start. Cables do not change where a part of their string would have no tension and, with
-    every, would become much shorter.
+    drawn shape is as good a start. bending: False: cables alone on two supports as strings without bending stiffness,
+    see `single_string`; without such cables none. Cables do not change where a part of their string would
+    have no tension and, with every, would become much shorter.
     """
     model = problem.model
     if not model.cables:
@@ -51,6 +55,8 @@ def hang(problem: StaticProblem, every: bool) -> bool:
     if not (every or np.array_equal(q, problem.begin)):
         return False
     nodes = problem.string_nodes = problem.string_nodes or StringNodes(model)
+    if not bending and not any(nodes.is_alone(group, q) for group in nodes.groups):
+        return False
     groups = [group for group in nodes.groups if nodes.can_hang(group) and (every or (
         nodes.acted_on.isdisjoint(group.tolist()) and _is_straight_and_slack(nodes, group, problem.as_drawn)))]
     found = False
@@ -58,7 +64,7 @@ def hang(problem: StaticProblem, every: bool) -> bool:
     for _ in range(SHAPE_ITERATIONS if groups and (uneven or _depend_on_shape(model)) else 1):
         force = _string_loads(problem, q) if groups else q
         for group in groups:
-            line, rest = _known_at_rest(problem, nodes, group, q, force)
+            line, rest = _known_at_rest(problem, nodes, group, q, force, bending or not nodes.is_alone(group, q))
             if rest is not None and (rest.taut.all() or (every and rest.shortest > MIN_LENGTH_RATIO)):
                 q, found = line.set_in(q, rest), True
             elif rest is not None:
@@ -68,24 +74,25 @@ def hang(problem: StaticProblem, every: bool) -> bool:
     return found
 
 
-def _known_at_rest(problem: StaticProblem, nodes: StringNodes, group: np.ndarray, q: np.ndarray,
-                   force: np.ndarray) -> tuple[_Line, Rest | None]:
+def _known_at_rest(problem: StaticProblem, nodes: StringNodes, group: np.ndarray, q: np.ndarray, force: np.ndarray,
+                   bending: bool) -> tuple[_Line, Rest | None]:
     """Return the same as `_at_rest`, which is not repeated for the last configuration and forces of a group."""
-    given, key = (q, force), group.tobytes()
+    given, key = (q, force), (group.tobytes(), bending)
     last = problem.last_strings.get(key)
     if last is None or not all(map(np.array_equal, last[0], given)):
-        last = problem.last_strings[key] = given, _at_rest(problem, nodes, group, q, force)
+        last = problem.last_strings[key] = given, _at_rest(problem, nodes, group, q, force,
+                                                           rest_of if bending else rest_between)
     return last[1]
 
 
-def _at_rest(problem: StaticProblem, nodes: StringNodes, group: np.ndarray, q: np.ndarray,
-             force: np.ndarray) -> tuple[_Line, Rest | None]:
+def _at_rest(problem: StaticProblem, nodes: StringNodes, group: np.ndarray, q: np.ndarray, force: np.ndarray,
+             found: Callable[[Strings], Rest | None]) -> tuple[_Line, Rest | None]:
     """Return cables as strings with one link per element, or more where elements turn far, and their state of rest."""
     line = _Line(problem, nodes, group, q, 1)
-    rest = rest_of(line.strings(force))
+    rest = found(line.strings(force))
     if rest is not None and (turn := line.turn(rest)) > MAX_ELEMENT_TURN:
         line = _Line(problem, nodes, group, q, min(int(np.ceil(turn / MAX_ELEMENT_TURN)) + 1, MAX_ELEMENT_LINKS))
-        rest = rest_of(line.strings(force))
+        rest = found(line.strings(force))
     return line, rest
 
 
