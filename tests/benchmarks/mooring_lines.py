@@ -8,7 +8,8 @@ of two meshes of lumped masses. Their distance is printed: MoorDyn's added mass 
 that of funicular the kinetic energy of the fluid.
 
 CPU seconds are the least of alternating repetitions: of the run from a state of rest on, and with the scene and its
-state of rest. MoorDyn holds the velocity of the upper end between its calls: the error of an interval of 0.1 s, at
+state of rest. A mesh of funicular has its short elements where the line leaves the bed; those of a line of MoorDyn
+have one length. MoorDyn holds the velocity of the upper end between its calls: the error of an interval of 0.1 s, at
 which funicular writes its output, is 3e-2, so that it is also called more often.
 
     pip install '.[bench]' && python tests/benchmarks/mooring_lines.py [--out FILE.csv] [--repetitions 3]
@@ -46,11 +47,15 @@ Found = tuple[np.ndarray, float, float]
 """Tension (times,) in N; CPU seconds of the run, and of all."""
 
 
-def scene(elements: int) -> fu.Scene:
-    """Return the line of funicular."""
+NODES = (0.0, 150.0, 200.0, 250.0, 300.0, 350.0, 471.0, 593.0, 714.0, LENGTH)
+"""Of a mesh with short elements where the line leaves the bed, at s from 190 m to 270 m, m."""
+
+
+def scene(mesh: int | tuple[float, ...]) -> fu.Scene:
+    """Return the line of funicular; mesh: number of its elements, or their nodes, m."""
     made, area = fu.Scene(gravity=(0, -GRAVITY, 0)), np.pi / 4 * DIAMETER**2
-    line = made.cable("line", start=(0, 0, 0), end=(FAR, HIGH, 0), rest_length=LENGTH, elements=elements,
-                      element="cable8p", strain="engineering",
+    line = made.cable("line", start=(0, 0, 0), end=(FAR, HIGH, 0), rest_length=LENGTH, element="cable8p",
+                      strain="engineering", **{"elements" if isinstance(mesh, int) else "nodes": mesh},
                       section=fu.GeneralSection(area=area, second_moment_about_z=1e-10),
                       material=fu.Material(youngs_modulus=EA / area, poisson_ratio=0.0, density=MASS / area,
                                            damping_time=DAMPING_TIME))
@@ -67,10 +72,10 @@ def scene(elements: int) -> fu.Scene:
     return made
 
 
-def ours(elements: int, **settings) -> Found:
+def ours(mesh: int | tuple[float, ...], **settings) -> Found:
     """Run funicular."""
     begin = time.process_time()
-    made = scene(elements)
+    made = scene(mesh)
     rest = made.equilibrium()
     ready = time.process_time()
     run = made.run(duration=DURATION, output_step=OUTPUT, initial=rest, progress=False, **settings)
@@ -169,8 +174,9 @@ def converged_theirs(segments: int, step: float) -> np.ndarray:
     return fine + (fine - coarse) / 3
 
 
-OURS: list[tuple[int, dict]] = [
-    *((n, {"integrator": "genalpha", "step": h}) for n, h in ((4, 0.1), (6, 0.1), (10, 0.1), (10, 0.05), (20, 0.05))),
+OURS: list[tuple[int | tuple[float, ...], dict]] = [
+    *((mesh, {"integrator": "genalpha", "step": h})
+      for mesh, h in ((4, 0.1), (6, 0.1), (10, 0.1), (NODES, 0.1), (16, 0.1), (20, 0.05))),
     *((n, {"integrator": one, "tol": tol}) for n, tol in ((6, 1e-2), (10, 1e-3)) for one in ("genalpha", "auto"))]
 THEIRS = [(5, 0.05, 0.1), (10, 0.025, 0.1), (20, 0.02, 0.1), (10, 0.025, 0.025), (20, 0.02, 0.02), (40, 0.01, 0.01)]
 """Segments, step near the limit of stability and interval of calls, s."""
@@ -184,9 +190,10 @@ def main() -> None:
     reference = converged_ours(options.elements)
     limit = converged_theirs(2 * options.elements, 0.05 / options.elements)
     cases: list[tuple[str, int, str, Callable[[], Found], np.ndarray]] = []
-    for n, settings in few(OURS):
+    for mesh, settings in few(OURS):
         said = ", ".join(f"{key} {value}" if key != "integrator" else value for key, value in settings.items())
-        cases.append(("funicular", n, said, partial(ours, n, **settings), reference))
+        n, graded = (mesh, "") if isinstance(mesh, int) else (len(mesh) - 1, ", graded")
+        cases.append(("funicular", n, said + graded, partial(ours, mesh, **settings), reference))
     cases += [("MoorDyn", n, f"rk4, step {h}, calls {c}", partial(theirs, n, h, c), limit) for n, h, c in few(THEIRS)]
     taken: list[list[Found]] = [[] for _ in cases]
     for _ in range(options.repetitions):
