@@ -36,6 +36,9 @@ MAX_DENSE_UNKNOWNS = 120
 MAX_TRIAL_COST_RATIO = 8.0
 """Ratio of expected costs, implicit over explicit, up to which the implicit method runs a trial."""
 
+MAX_TRIAL_COST_RATIO_WITH_FRICTION = 3.0
+"""The same with kinks of friction, which the implicit method resolves less well."""
+
 MIN_TRIAL_EVALUATIONS = 3000.0
 """Lower bound of the explicit method's evaluations of eq 38 for a trial against it."""
 
@@ -127,13 +130,12 @@ def _asked_for(settings: RunSettings, scene: SceneData, model: Model, engine: En
 def cheapest(demands: Demands, duration: float) -> tuple[Integrator, str, Rival | None]:
     """Return the integrator with the lowest expected cost, or worth a trial, the reason, and its rival.
 
-    The cost by stability is certain, the cost by the motion is an estimate: of two similar ones the latter is tried,
-    except with kinks of friction, which that method resolves less well.
+    The cost by stability is certain, the cost by the motion is an estimate: of two similar ones the latter is tried.
     """
     said = {one: cost for one in INTEGRATORS.values() if (cost := one.cost(demands)) is not None}
     stable, limited = stable_at(fixed_step=False), min(said, key=lambda one: (one.stability is None, said[one][0]))
     why, sure = ", ".join(text for _, text in said.values()), said[limited][0]
-    if said[stable][0] > sure * (1.0 if demands.friction else MAX_TRIAL_COST_RATIO):
+    if said[stable][0] > sure * (MAX_TRIAL_COST_RATIO_WITH_FRICTION if demands.friction else MAX_TRIAL_COST_RATIO):
         return _made(limited), why, None
     worth = sure * duration >= MIN_TRIAL_EVALUATIONS
     if not worth and said[stable][0] > sure:
