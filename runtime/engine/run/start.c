@@ -14,7 +14,7 @@
 #define MIN_MOTION 1e-6
 #define MOTION_SAMPLES 64 /* of prescribed motions over the run */
 /* of the largest motion that is prescribed: least motion; first errors, which may grow, stay small beside later ones */
-#define PRESCRIBED_MOTION_SHARE 0.01
+#define PRESCRIBED_MOTION_SHARE 0.001
 #define FIRST_PERIOD 1e-3 /* of the duration: until then the velocities at the start define the scale of motion */
 
 /* Starts the scheme at `now` with consistent velocities, projected on the joints if requested, and with accelerations
