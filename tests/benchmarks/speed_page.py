@@ -34,6 +34,12 @@ def rods(rows: list[Row]) -> list[Row]:
 
 PEERS = [
     Section(
+        "Aims",
+        """Figures that decide how fast answers are, and what is aimed at. The sections below have the errors beside
+them.""",
+        [Table("aims", {"figure": "figure", "unit": "unit", "measured": "measured", "aim": "aim", "reached": "reached"},
+               table="aims")]),
+    Section(
         "Side by side with Exudyn",
         """CPU time in s until the path of the tip or of the mass has the error at the head of the column: funicular
 / Exudyn, and in brackets their ratio. Both codes run interleaved on one thread each, set-up excluded, Exudyn with

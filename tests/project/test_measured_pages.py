@@ -8,6 +8,7 @@ import sys
 from functools import cache
 from pathlib import Path
 
+import aims
 import pytest
 import records
 import table
@@ -94,6 +95,11 @@ def test_scripts_of_pages_exist_and_records_are_of_scripts():
     assert {file.stem for file in records.FOLDER.glob("*.json")} <= {*scripts(), "validation"}
     for section in SECTIONS:
         assert not section.test or (ROOT / section.test).is_file(), section.title
+
+
+def test_aims_are_compared_with_the_other_records():
+    recorded = records.load(records.FOLDER / "aims.json")["aims"]["rows"]
+    assert recorded == [{key: records.plain(value) for key, value in aim.row().items()} for aim in aims.AIMS]
 
 
 def test_readme_lists_every_script_and_is_short():
