@@ -188,14 +188,10 @@ static void point_of(const fu_model *model, const fu_attachment *on, const fu_st
     if (on->cable >= 0 && on->slide < 0) {
         const fu_cable *cable = &model->cables[on->cable];
         const int first = cable->first + on->element * cable->per_node;
-        for (int d = 0; d < dim; ++d) {
-            out->p[d] = 0.0;
-            for (int k = 0; k < n / dim; ++k) {
-                out->P[d * n + k * dim + d] = on->N[k];
-                out->p[d] += on->N[k] * state->q[first + k * dim + d];
-                out->v[d] += on->N[k] * state->v[first + k * dim + d];
-            }
-        }
+        for (int d = 0; d < dim; ++d)
+            for (int k = 0; k < n / dim; ++k) out->P[d * n + k * dim + d] = on->N[k];
+        fu_interpolate(dim, n, on->N, state->q + first, out->p);
+        fu_interpolate(dim, n, on->N, state->v + first, out->v);
     }
 }
 

@@ -47,6 +47,22 @@ static inline void fu_turn_in_space(int dim, const double *turn, double out[3])
     for (int d = 0; d < 3; ++d) out[d] = dim == 3 ? turn[d] : d == 2 ? turn[0] : 0.0;
 }
 
+/* Does what fu_interpolate does; the compiler unrolls the loops for constant dim. */
+static inline void fu_sum_over_vectors(int dim, int vectors, const double *N, const double *x, double out[3])
+{
+    double sum[3] = {0.0};
+    for (int k = 0; k < vectors; ++k)
+        for (int d = 0; d < dim; ++d) sum[d] += N[k] * x[k * dim + d];
+    for (int d = 0; d < dim; ++d) out[d] = sum[d];
+}
+
+/* Computes the sum of shape functions times the vectors of an element with n coordinates x. */
+static inline void fu_interpolate(int dim, int n, const double *N, const double *x, double out[3])
+{
+    if (dim == 2) fu_sum_over_vectors(2, n / 2, N, x, out);
+    else fu_sum_over_vectors(3, n / 3, N, x, out);
+}
+
 int fu_attachment_coordinates(const fu_model *model, const fu_attachment *on, const fu_state *state, int *at);
 void fu_attachment_at(const fu_model *model, const fu_attachment *on, const fu_state *state, double s_rate, int what,
                       fu_attachment_state *out);

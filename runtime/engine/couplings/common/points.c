@@ -12,22 +12,6 @@ static int element_of(const fu_model *model, const fu_attachment *on)
     return cable->first + on->element * cable->per_node;
 }
 
-/* out[d] = sum over k of N[k] x[k][d]; the compiler unrolls the loops for constant dim. */
-static inline void sum_over(int dim, int vectors, const double *N, const double *x, double out[3])
-{
-    double sum[3] = {0.0};
-    for (int k = 0; k < vectors; ++k)
-        for (int d = 0; d < dim; ++d) sum[d] += N[k] * x[k * dim + d];
-    for (int d = 0; d < dim; ++d) out[d] = sum[d];
-}
-
-static void interpolate(const fu_model *model, const fu_attachment *on, const double *x, double out[3])
-{
-    const int coordinates = model->cables[on->cable].coordinates;
-    if (model->dim == 2) sum_over(2, coordinates / 2, on->N, x, out);
-    else sum_over(3, coordinates / 3, on->N, x, out);
-}
-
 void fu_point_at(const fu_model *model, const fu_attachment *on, const fu_state *state, double p[3], double *v,
                  double *a)
 {
@@ -36,9 +20,10 @@ void fu_point_at(const fu_model *model, const fu_attachment *on, const fu_state 
     for (int d = 0; d < 3 && v; ++d) v[d] = 0.0;
     for (int d = 0; d < 3 && a; ++d) a[d] = 0.0;
     if (first >= 0) {
-        interpolate(model, on, state->q + first, p);
-        if (v) interpolate(model, on, state->v + first, v);
-        if (a) interpolate(model, on, state->acceleration + first, a);
+        const int n = model->cables[on->cable].coordinates;
+        fu_interpolate(dim, n, on->N, state->q + first, p);
+        if (v) fu_interpolate(dim, n, on->N, state->v + first, v);
+        if (a) fu_interpolate(dim, n, on->N, state->acceleration + first, a);
         return;
     }
     fu_attachment_state at;
