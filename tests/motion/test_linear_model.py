@@ -6,7 +6,7 @@ import pytest
 from expectations import energy_error, refused
 from funicular import load_run
 from interrupted_runs import check_file_and_resume
-from shared_scenes import add_cable, add_rider, cable_scene, structural
+from shared_scenes import add_cable, cable_scene, structural
 
 THIN = fu.Rectangle(height=0.01, width=0.01)
 SOFT = fu.Material(youngs_modulus=2e8, poisson_ratio=0.0, density=1100, damping_time=1e-3, mass_damping=0.3)
@@ -54,6 +54,22 @@ def driven(size):
     return scene
 
 
+def with_riders(size):
+    """Return a stretched cable under three riders: one driven, one free, which carries a body, and an eyelet."""
+    scene = fu.Scene(gravity=(0, 0, 0))
+    add_cable(scene, pins="ends", **WIRE)
+    scene.rigid_body("walker", mass=0.1, inertia=(1e-3, 1e-3, 1e-3), position=(0.8, 0, 0), velocity=(3, 0, 0))
+    scene.slide("walker", along="wire", velocity=3.0 / (4 / 3.99), name="walk")
+    scene.force("walker", value=(0, -2 * size, 0.5 * size), scale=fu.Harmonic(amplitude=1.0, frequency=4.0))
+    scene.rigid_body("trolley", mass=0.2, inertia=(1e-3, 1e-3, 1e-3), position=(2.8, 0, 0), velocity=(-2, 0, 0))
+    scene.slide("trolley", along="wire", name="back")
+    scene.rigid_body("load", mass=0.1, inertia=(1e-3, 1e-3, 1e-3), position=(2.8, -0.2, 0), velocity=(-2, 0, 0))
+    scene.joint("spherical", ("trolley", (0, -0.1, 0)), ("load", (0, 0.1, 0)), name="eye")
+    scene.force("load", value=(0, -size, 0), scale=fu.Harmonic(amplitude=1.0, frequency=2.0))
+    scene.slide((3.2, 0, 0), along="wire", name="eyelet")
+    return scene
+
+
 def differences(make, size, names):
     """Return the largest difference of results by the linear model and by the equations of the scene."""
     one, other = (make(size).run(integrator=name, **SETTINGS) for name in ("linear", "genalpha"))
@@ -70,7 +86,9 @@ def differences(make, size, names):
     *((lambda size, element=element: pushed(size, element), ()) for element in ("cable8p", "cable12", "beam12p",
                                                                                 "beam24")),
     (with_body, ("load.position", "load.acceleration", "eye.force", "stay.force")),
-    (on_moving_support, ()), (driven, ("drive.force", "end.force"))])
+    (on_moving_support, ()), (driven, ("drive.force", "end.force")),
+    (with_riders, ("walker.position", "walk.force", "walk.traction", "back.s", "back.force", "load.acceleration",
+                   "eye.force", "eyelet.force"))])
 def test_the_error_of_the_linear_model_is_of_second_order(make, names):
     """Positions, forces of joints and springs, accelerations, and section forces: half the load, a fourth of the error.
     """
@@ -94,9 +112,10 @@ def test_the_estimate_is_near_the_error_and_a_large_motion_is_noted():
     assert small.report["messages"] == []
 
 
-def test_a_killed_run_continues_with_the_same_numbers(tmp_path):
+@pytest.mark.parametrize("make", [with_body, with_riders])
+def test_a_killed_run_continues_with_the_same_numbers(make, tmp_path):
     settings = SETTINGS | {"integrator": "linear"}
-    whole = check_file_and_resume(with_body(0.3), tmp_path, 40, **settings)
+    whole = check_file_and_resume(make(0.3), tmp_path, 40, **settings)
     resumed = load_run(tmp_path / "run.nc")
     assert resumed.report["resumed_at_s"]
     assert resumed.report["linear_model_error_m"] == whole.report["linear_model_error_m"]
@@ -132,12 +151,44 @@ def test_steps_of_a_fixed_size_go_over_kinks_of_forces():
     assert errors[0] > 3 * errors[1] > 9 * errors[2]
 
 
+def walked(end="error", speed=2.0):
+    """Return a cable at rest under a rider that leaves it at its end."""
+    scene = fu.Scene(gravity=(0, -9.81, 0))
+    add_cable(scene, pins="ends", **WIRE)
+    scene.rigid_body("walker", mass=0.02, inertia=(1e-3, 1e-3, 1e-3), position=(3.5, 0, 0), velocity=(speed, 0, 0))
+    scene.slide("walker", along="wire", at_end=end, velocity=speed / (4 / 3.99), name="walk")
+    return scene
+
+
+def test_riders_leave_their_cable():
+    settings = {"duration": 0.4, "initial": "equilibrium", "tol": 1e-4, "output_step": 0.01}
+    one, other = (walked("leave").run(integrator=name, **settings) for name in ("linear", "genalpha"))
+    (left,), (also,) = one.report["events"], other.report["events"]
+    assert left["what"] == also["what"] == "left"
+    assert left["time"] == pytest.approx(also["time"], abs=1e-4)
+    assert np.abs(one["walker.position"] - other["walker.position"]).max() < 1e-3
+    with pytest.raises(fu.EndOfCableError, match="ran off the end"):
+        walked().run(integrator="linear", **settings)
+
+
+def test_steps_of_a_fixed_size_go_over_nodes():
+    """The rider passes three nodes."""
+    run = with_riders(0.1).run(integrator="linear", **SETTINGS)
+    assert run.report["element_crossings"] >= 2
+    assert run.report["steps"] == round(SETTINGS["duration"] / SETTINGS["step"])
+    assert run.report["factorisations"] == 1
+    assert max(np.abs(run[f"{name}.residual"]).max() for name in ("walk", "back", "eyelet")) < 1e-13
+
+
 def test_what_it_does_not_support_is_refused():
-    scene = cable_scene(pins="ends")
-    add_rider(scene, 0.2, 0.1)
-    with refused('slide "trolley": integrator "linear" does not support what slides along a cable by a constraint; '
-                 "take another integrator"):
-        scene.run(0.1, integrator="linear")
+    for given, what in (({"friction": 0.1}, "friction of slides and stops; leave them out"),
+                        ({"at_end": fu.HardStop(restitution=0.5)}, "friction of slides and stops; leave them out"),
+                        ({"frame": "tangent"}, 'the frame "tangent"; take the frame "point"')):
+        scene = cable_scene(pins="ends")
+        scene.rigid_body("A", mass=1.0, inertia=(1e-3, 1e-3, 1e-3), position=(0.2, 0, 0))
+        scene.slide("A", along="wire", name="trolley", **given)
+        with refused(f'slide "trolley": integrator "linear" does not support {what}, or take another integrator'):
+            scene.run(0.1, integrator="linear")
     scene = fu.Scene()
     scene.modal_body("bar", start=(0, 0, 0), end=(0.5, 0, 0), modes=2, elements=4, section=THIN, material=SOFT)
     with refused('modal_body "bar": integrator "linear" does not support modal bodies; take another integrator: '

@@ -273,8 +273,8 @@ cdef extern from * nogil:
     ctypedef struct fu_step_factor:
         double *L
     ctypedef struct fu_linear_model:
-        int n, width, stride
-        const int *dof, *mixed
+        int n, width, stride, n_moving
+        const int *moves, *dof, *mixed
         fu_sparse combinations, closing, read, held, joints
         fu_sparse *exact
         const double **matrices

@@ -5,6 +5,18 @@ cdef class LinearModels(Statics):
 
     cdef fu_linear_model linear
 
+    cdef _moving(self):
+        """Return whether constraints move along cables, row by row, and the number of their multipliers."""
+        cdef const fu_coupling *coupling
+        cdef int k
+        moves, multipliers = np.zeros(self.model.n_rows, dtype=int), 0
+        for k in range(self.model.n_couplings):
+            coupling = self.model.couplings[k]
+            if coupling.row >= 0 and coupling.n_coordinates:
+                moves[coupling.row] = 1
+                multipliers += coupling.n_multipliers
+        return moves, multipliers
+
     def constraint_rows(self):
         """Return the rows of the joints' constraints over the dofs in the static state, as triplets: multipliers, dofs,
         and values.
@@ -13,7 +25,8 @@ cdef class LinearModels(Statics):
         cdef int r, c, k
         found = []
         fu_evaluate_rows(&self.model, &self.run.next, &self.run.accelerator)
-        for r in range(self.model.n_rows):
+        moves, _ = self._moving()
+        for r in np.flatnonzero(moves == 0):
             rows = &self.run.accelerator.rows[r]
             for c in range(rows.rows):
                 if not rows.redundant_rows >> c & 1:
@@ -50,6 +63,8 @@ cdef class LinearModels(Statics):
         cdef fu_linear_model *m = &self.linear
         cdef int k
         m.n, m.width, m.stride = model.n, model.width, model.stride
+        moves, m.n_moving = self._moving()
+        m.moves = self._ints(moves)
         m.dof, m.mixed = self._ints(model.dof), self._ints(model.mixed)
         self._sparse(&m.combinations, model.combinations)
         self._sparse(&m.closing, model.closing)

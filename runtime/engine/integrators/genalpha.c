@@ -32,7 +32,6 @@
 
 /* of the usual step: a shorter one keeps a_n, with an error below that of the usual step */
 #define SHORT_STEP_SHARE 0.1
-#define MEAN_JUMP_DISTANCE 0.25 /* of a step: mean distance of a discontinuity from its middle */
 
 /* The integrator's work space. */
 typedef struct {
@@ -182,15 +181,10 @@ static int step(fu_run *run, double h)
     return fu_coast(run, h);
 }
 
-/* Returns the local error of positions, m: h^2 |beta + (alpha_m - alpha_f)/2 - 1/6| (q''_n+1 - q''_n). If a slide has
- * changed its element the accelerations are discontinuous at some instant of the step, and velocities have an error of
- * the jump times the time between it and the middle. That counts as over one step: the permitted error is h/t of the
- * whole. */
+/* Returns the local error of positions, m. */
 static double error(fu_run *run, double h)
 {
-    const fu_alpha_scheme *g = fu_alpha_scheme_of(run);
-    const double smooth = fu_alpha_error_factor(g);
-    const double factor = h * h * (fu_count_changes(run) ? MEAN_JUMP_DISTANCE : smooth);
+    const double factor = h * h * fu_alpha_error_factor(run);
     fu_set_difference(run->model->threads, run->model->n_dof, factor, run->next.acceleration, run->now.acceleration,
                       run->work);
     return fu_is_short(run, h) ? fu_error_size(run, run->work, fu_allowed_elsewhere(run)) : fu_filtered_size(run);

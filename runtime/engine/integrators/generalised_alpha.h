@@ -4,8 +4,11 @@
 
 #include "base/workspace.h"
 #include "equations/run.h"
+#include "events/events.h"
 
 #include <math.h>
+
+#define FU_MEAN_JUMP_DISTANCE 0.25 /* of a step: mean distance of a discontinuity from its middle */
 
 typedef struct {
     double alpha_m, alpha_f, beta, gamma;
@@ -29,9 +32,14 @@ static inline double fu_alpha_sigma(const fu_alpha_scheme *g, double h)
     return g->beta * h * h * (1.0 - g->alpha_f) / (1.0 - g->alpha_m);
 }
 
-/* Returns the factor of the change of accelerations in the local error of positions of a smooth step, over h^2. */
-static inline double fu_alpha_error_factor(const fu_alpha_scheme *g)
+/* Returns the factor of the change of accelerations in the local error of positions of a step, over h^2:
+ * |beta + (alpha_m - alpha_f)/2 - 1/6| of a smooth one. If a slide has changed its element the accelerations are
+ * discontinuous at some instant of the step, and velocities have an error of the jump times the time between it and the
+ * middle. That counts as over one step: the permitted error is h/t of the whole. */
+static inline double fu_alpha_error_factor(const fu_run *run)
 {
+    const fu_alpha_scheme *g = fu_alpha_scheme_of(run);
+    if (fu_count_changes(run)) return FU_MEAN_JUMP_DISTANCE;
     return fabs(g->beta + 0.5 * (g->alpha_m - g->alpha_f) - 1.0 / 6.0);
 }
 

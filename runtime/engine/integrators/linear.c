@@ -4,7 +4,8 @@
  *     r(y) = L y + Z' F(y),   change = -(L + E)^-1 r,
  * with the operator L of cables and joints, exact, and E, the derivative of Z' F at the start. Iterations continue
  * with r = Z' (F(y + change) - F(y)) - E change, which is small unless F has changed since the start, and take no
- * product with L. */
+ * product with L. F includes the forces of constraints that move along cables, whose multipliers each iteration changes
+ * so that its solution closes their gaps. */
 #include "base/clock.h"
 #include "base/simd.h"
 #include "base/workspace.h"
@@ -12,7 +13,7 @@
 #include "equations/equations.h"
 #include "equations/step_control.h"
 #include "integrators/generalised_alpha.h"
-#include "integrators/linear_state.h"
+#include "integrators/linear_constraints.h"
 
 #include <math.h>
 #include <string.h>
@@ -40,16 +41,19 @@ static void linear_residual(fu_run *run, const fu_linear_space *w)
     fu_sparse_add_times(&run->linear->joints, 1.0, w->next.y, w->linear);
 }
 
-/* Weights of the matrices of a step; the change of the coordinates for a residual, and that of a for the former. */
+/* Weights of the matrices of a step; the change of the coordinates for a residual, and that of a for the former;
+ * whether constraints that move are closed: in a very short step rounding over h^2 would dominate their forces. */
 typedef struct {
     double of[FU_MATRICES], psi, a;
+    int closes;
 } step_weights;
 
 static step_weights weights_of(const fu_run *run, double h)
 {
     const fu_alpha_scheme *g = fu_alpha_scheme_of(run);
     const double sigma = fu_alpha_sigma(g, h), rate = g->gamma / (g->beta * h);
-    return (step_weights){{1.0, sigma * rate, sigma}, sigma, 1.0 / (g->beta * h * h)};
+    return (step_weights){
+        {1.0, sigma * rate, sigma}, sigma, 1.0 / (g->beta * h * h), run->linear->n_moving && !fu_is_short(run, h)};
 }
 
 /* x[i] = a y[i] + b z[i] + c w[i] + d v[i] */
@@ -106,6 +110,10 @@ static double solve(fu_run *run, const fu_linear_space *w, const step_weights *w
 {
     const fu_linear_model *linear = run->linear;
     const double begin = fu_clock();
+    if (weights->closes) {
+        fu_linear_gaps(run, w, FU_OF_POSITIONS, 1, NULL);
+        fu_linear_change_multipliers(run, w);
+    }
     fu_add_times(NULL, linear->n, -1.0, w->left, w->linear);
     fu_set_times(NULL, linear->n, -weights->psi, w->left, w->change);
     fu_linear_model_solve(linear, L, w->change);
@@ -151,15 +159,26 @@ static int fail(fu_run *run, const fu_linear_space *w)
     return fu_fail(run, FU_ITERATION, run->work, -1);
 }
 
-/* Computes `next` at the predicted end of a step, and its residual, with the impulse of what the last step has left;
- * returns its size. */
-static double begin_step(fu_run *run, const fu_linear_space *w, double h)
+/* Computes `next` at the predicted end of a step, and its residual, with the impulse of what the last step has left,
+ * and its size; returns nonzero where that fails. */
+static int begin_step(fu_run *run, const fu_linear_space *w, const step_weights *weights, const double *L, double h,
+                      double *size)
 {
     take_step(run, w, h);
-    fu_linear_kinematics(run, w);
+    if (fu_linear_kinematics(run, w)) return 1;
+    if (weights->closes && fu_linear_condense(run, w, weights->psi, L)) return fu_fail(run, FU_MATRIX, run->next.v, -1);
     linear_residual(run, w);
     fu_add_times(NULL, run->linear->n, *w->h_now / h, w->left_now, w->linear);
-    return residual(run, w);
+    *size = residual(run, w);
+    return 0;
+}
+
+/* Returns whether the constraints that move are closed after a change of this size, which has grown if it is rounding.
+ * A gap after a fixed step would cause a force in the next one whose vibrations decay slowly. */
+static int is_closed(const fu_run *run, const step_weights *weights, double size, double last)
+{
+    const double tolerance = run->fixed_step > 0.0 ? run->round_off : enough(run);
+    return !weights->closes || size >= last || fu_linear_gap(run) <= tolerance;
 }
 
 /* Iterates to the end of a step; returns 0 on convergence. The residual that remains is compensated by the next step.
@@ -169,7 +188,8 @@ static int iterate(fu_run *run, const fu_linear_space *w, double h)
     const step_weights weights = weights_of(run, h);
     const double *L = factor_of(run, h), tolerance = enough(run);
     if (!L) return 1;
-    double begin = fu_clock(), last = INFINITY, before = begin_step(run, w, h);
+    double begin = fu_clock(), last = INFINITY, before;
+    if (begin_step(run, w, &weights, L, h, &before)) return 1;
     run->statistics.time_residual += fu_clock() - begin;
     for (int i = 0; i < MOST_ITERATIONS; ++i) {
         const double size = solve(run, w, &weights, L);
@@ -177,23 +197,31 @@ static int iterate(fu_run *run, const fu_linear_space *w, double h)
         fu_add_times(NULL, run->linear->n, weights.a, w->change, w->next.a);
         begin = fu_clock();
         take_step(run, w, h);
-        fu_linear_kinematics(run, w);
+        if (fu_linear_kinematics(run, w)) return 1;
         const double after = residual(run, w), ratio = fmin(size / last, MAX_CONTRACTION);
         double contraction = fmin(1.0, RESIDUAL_UNDERESTIMATE * after / before);
         if (i) contraction = fmin(contraction, ratio / (1.0 - ratio));
         run->statistics.time_residual += fu_clock() - begin;
         *w->h_left = h;
-        if (size <= run->round_off || !(size * contraction > tolerance)) return 0;
+        if (size <= run->round_off || (!(size * contraction > tolerance) && is_closed(run, &weights, size, last)))
+            return 0;
         last = size;
         before = after;
     }
     return fail(run, w);
 }
 
+/* Copies the multipliers of constraints that move. */
+static void take_multipliers(const fu_run *run, const double *from, double *to)
+{
+    if (run->linear->n_moving) memcpy(to, from, sizeof(double) * (size_t)run->model->n_multipliers);
+}
+
 static int step(fu_run *run, double h)
 {
     const fu_linear_space w = fu_linear_space_of(run);
     fu_predict_internal(run, h);
+    take_multipliers(run, w.moving.lambda_now, w.moving.lambda);
     memcpy(w.next.a, w.now.a, sizeof(double) * (size_t)run->linear->n);
     return iterate(run, &w, h);
 }
@@ -202,14 +230,14 @@ static int step(fu_run *run, double h)
 static double error(fu_run *run, double h)
 {
     if (run->fixed_step > 0.0 && run->statistics.steps % STEPS_PER_ESTIMATE) return run->last_error;
-    const fu_alpha_scheme *g = fu_alpha_scheme_of(run);
     const fu_linear_space w = fu_linear_space_of(run);
-    const double factor = h * h * fu_alpha_error_factor(g);
+    const double factor = h * h * fu_alpha_error_factor(run);
     for (int i = 0; i < run->model->n_dof; ++i)
         run->work[i] = factor * (run->next.acceleration[i] - run->now.acceleration[i]);
     fu_mass_times(run->model, run->next.q, run->work, run->before);
     fu_linear_model_project(run->linear, run->before, w.change);
     fu_linear_model_solve(run->linear, factor_of(run, h), w.change);
+    if (weights_of(run, h).closes) fu_linear_keep_constraints(run, &w);
     fu_linear_model_expand(run->linear, run->model->n_dof, w.change, run->work);
     return fu_error_size(run, run->work, fu_allowed_elsewhere(run));
 }
@@ -238,6 +266,7 @@ static void account(fu_run *run, double h)
     memcpy(w.now.y, w.next.y, 4 * size); /* its rates and a are behind it */
     memcpy(w.left_now, w.left, size);
     *w.h_now = *w.h_left;
+    take_multipliers(run, w.moving.lambda, w.moving.lambda_now);
     find_powers(run, &w, &dissipated, &external);
     run->dissipated += 0.5 * h * (run->dissipated_power + dissipated);
     run->external += 0.5 * h * (run->external_power + external);
@@ -262,6 +291,23 @@ static void note_error(fu_run *run, const fu_linear_space *w)
     w->error[1] = run->now.t;
 }
 
+/* Corrects the accelerations of `next`, and the multipliers, so that the constraints that move hold in them: those of
+ * the scheme hold in positions. Returns nonzero where that fails. */
+static int correct_accelerations(fu_run *run, const fu_linear_space *w)
+{
+    const fu_linear_model *linear = run->linear;
+    if (fu_linear_condense(run, w, 1.0, linear->of_mass.L)) return 1;
+    memset(w->left, 0, sizeof(double) * (size_t)linear->n);
+    fu_linear_gaps(run, w, FU_OF_ACCELERATIONS, 1, run->next.acceleration);
+    fu_linear_change_multipliers(run, w);
+    fu_set_times(NULL, linear->n, -1.0, w->left, w->change);
+    fu_linear_model_solve(linear, linear->of_mass.L, w->change);
+    fu_linear_model_expand(linear, run->model->n_dof, w->change, run->work);
+    fu_add_times(NULL, run->model->n_dof, 1.0, run->work, run->next.acceleration);
+    memcpy(w->motion.acceleration, run->next.acceleration, sizeof(double) * (size_t)run->model->n_dof);
+    return 0;
+}
+
 static int row(fu_run *run, double *acceleration, double *reaction, double *elastic)
 {
     const fu_linear_space w = fu_linear_space_of(run);
@@ -271,7 +317,10 @@ static int row(fu_run *run, double *acceleration, double *reaction, double *elas
     fu_cable_totals totals = {.without_inertia = run->before};
     run->next = run->now; /* the functions above compute `next` */
     memcpy(acceleration, run->now.acceleration, size);
+    run->next.acceleration = acceleration;
     fu_evaluate_rows(model, &run->now, &run->accelerator);
+    take_multipliers(run, w.moving.lambda_now, w.moving.lambda);
+    const int failed = run->linear->n_moving && correct_accelerations(run, &w);
     fu_linear_exact_forces(run, &w);
     fu_linear_multipliers(run, &w);
     fu_linear_reactions(run, &w, reaction, &totals);
@@ -279,7 +328,30 @@ static int row(fu_run *run, double *acceleration, double *reaction, double *elas
     *elastic = totals.elastic + fu_coupling_energy(model, &run->now);
     if (run->record.n % ROWS_PER_ESTIMATE == 0 || run->now.t >= run->duration) note_error(run, &w);
     run->next = next;
-    return 0;
+    return failed;
+}
+
+/* Computes the second derivatives of `next`, and the multipliers of constraints that move; returns nonzero where that
+ * fails. */
+static int accelerate(fu_run *run, const fu_linear_space *w)
+{
+    const fu_linear_model *linear = run->linear;
+    const size_t size = sizeof(double) * (size_t)linear->n;
+    if (linear->n_moving) memset(w->moving.lambda, 0, sizeof(double) * (size_t)run->model->n_multipliers);
+    if (fu_linear_kinematics(run, w)) return 1;
+    if (linear->n_moving && fu_linear_condense(run, w, 1.0, linear->of_mass.L)) return 1;
+    linear_residual(run, w);
+    residual(run, w);
+    if (linear->n_moving) {
+        fu_linear_gaps(run, w, FU_OF_ACCELERATIONS, 1, run->next.acceleration);
+        fu_linear_change_multipliers(run, w);
+        take_multipliers(run, w->moving.lambda, w->moving.lambda_now);
+    }
+    fu_set_times(NULL, linear->n, -1.0, w->left, w->change);
+    fu_linear_model_solve(linear, linear->of_mass.L, w->change);
+    memcpy(w->next.second, w->change, size);
+    memcpy(w->next.a, w->change, size);
+    return fu_linear_kinematics(run, w);
 }
 
 /* Reads the coordinates' rates from the velocities of `now`, and computes their second derivatives. */
@@ -299,22 +371,14 @@ static int start(fu_run *run)
     memcpy(w.next.y, w.now.y, 4 * sizeof(double) * (size_t)n);
     const fu_state next = run->next;
     run->next = run->now;
-    fu_linear_kinematics(run, &w);
-    linear_residual(run, &w);
-    fu_linear_exact_forces(run, &w);
-    fu_linear_model_project(linear, w.force, w.change);
-    for (int i = 0; i < n; ++i) w.change[i] = -(w.linear[i] + w.change[i]);
-    fu_linear_model_solve(linear, linear->of_mass.L, w.change);
-    memcpy(w.next.second, w.change, sizeof(double) * (size_t)n);
-    memcpy(w.next.a, w.change, sizeof(double) * (size_t)n);
+    const int failed = accelerate(run, &w);
     memcpy(w.now.y, w.next.y, 4 * sizeof(double) * (size_t)n);
     memset(w.left_now, 0, sizeof(double) * (size_t)n);
     *w.h_now = 0.0;
-    fu_linear_kinematics(run, &w);
     fu_linear_exact_forces(run, &w);
     find_powers(run, &w, &run->dissipated_power, &run->external_power);
     run->next = next;
-    return FU_RUNNING;
+    return failed ? FU_SINGULAR : FU_RUNNING;
 }
 
 const fu_integrator fu_linear = {.name = "linear",
@@ -328,4 +392,5 @@ const fu_integrator fu_linear = {.name = "linear",
                                  .row = row,
                                  .keeps_scratch = 1,
                                  .coasts = 1,
+                                 .crosses_boundaries = 1,
                                  .defers_all = 1};

@@ -2,7 +2,8 @@
  *
  * Constraints of joints, linear there, determine some unknowns by the others, the coordinates y: dofs = S y + what
  * closes the constraints at each instant (solve/motion/linear_model.py). Cables have constant matrices over the dofs,
- * joints the stiffness of their forces at the start. Everything else is exact: bodies, springs, contacts, loads. */
+ * joints the stiffness of their forces at the start. Everything else is exact: bodies, springs, contacts, loads, and
+ * constraints that move along cables, whose forces are unknowns of each step (integrators/linear_constraints.h). */
 #ifndef FUNICULAR_INTEGRATORS_LINEAR_MODEL_H
 #define FUNICULAR_INTEGRATORS_LINEAR_MODEL_H
 
@@ -29,6 +30,8 @@ enum { FU_STEP_FACTORS = 4 }; /* kept: steps of a few sizes alternate between ou
 
 struct fu_linear_model {
     int n, width, stride; /* coordinates; half bandwidth of their matrices; fu_add_half_bands_times of cables */
+    int n_moving;         /* multipliers of constraints that move along cables, at most */
+    const int *moves;     /* n_rows: whether constraints do; they have no part in `closing` */
     const int *dof;       /* n: the dof that equals each coordinate; -1 for none */
     const int *mixed;     /* the dofs that are combinations of coordinates, row by row */
     fu_sparse combinations;

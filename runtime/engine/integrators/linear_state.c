@@ -5,7 +5,7 @@
 #include "couplings/force/force.h"
 #include "equations/equations.h"
 #include "events/events.h"
-#include "integrators/linear_state.h"
+#include "integrators/linear_constraints.h"
 
 #include <math.h>
 #include <string.h>
@@ -40,7 +40,7 @@ long fu_linear_lay_out(const fu_run *run, double *scratch, fu_linear_space *w)
     w->h_left = fu_take(scratch, &taken, 1);
     w->h_now = fu_take(scratch, &taken, 1);
     w->error = fu_take(scratch, &taken, 2);
-    return taken;
+    return fu_linear_take_constraints(run, scratch, taken, &w->moving);
 }
 
 fu_linear_space fu_linear_space_of(const fu_run *run)
@@ -66,21 +66,18 @@ static double close(const fu_run *run, const fu_linear_space *w, double *dofs)
     return largest;
 }
 
-/* What a constraint says of positions, of velocities, and of accelerations. */
-typedef enum { POSITION, VELOCITY, ACCELERATION } level;
-
-/* Computes the values of the constraints at a level, by the evaluated rows, for these velocities or accelerations. */
-static void evaluate(const fu_run *run, level of, const double *dofs, double *values)
+void fu_linear_gaps(const fu_run *run, const fu_linear_space *w, fu_level of, int moves, const double *dofs)
 {
     const fu_accelerator *work = &run->accelerator;
-    memset(values, 0, sizeof(double) * (size_t)run->model->n_multipliers);
+    memset(w->gaps, 0, sizeof(double) * (size_t)run->model->n_multipliers);
     for (int r = 0; r < run->model->n_rows; ++r) {
         const fu_rows *rows = &work->rows[r];
-        for (int c = 0; c < rows->rows; ++c) {
-            double *value = &values[rows->first + c];
+        for (int c = 0; c < rows->rows && run->linear->moves[r] == moves; ++c) {
+            double *value = &w->gaps[rows->first + c];
             if (rows->redundant_rows >> c & 1) continue;
-            *value = of == POSITION ? rows->C[c] : of == VELOCITY ? rows->rate[c] : -rows->W[c];
-            for (int k = 0; k < rows->n && of != POSITION; ++k) *value += rows->H[c * rows->n + k] * dofs[rows->at[k]];
+            *value = of == FU_OF_POSITIONS ? rows->C[c] : of == FU_OF_VELOCITIES ? rows->rate[c] : -rows->W[c];
+            for (int k = 0; k < rows->n && of != FU_OF_POSITIONS; ++k)
+                *value += rows->H[c * rows->n + k] * dofs[rows->at[k]];
         }
     }
 }
@@ -100,7 +97,16 @@ static void place(fu_run *run, const fu_linear_space *w)
     }
 }
 
-void fu_linear_kinematics(fu_run *run, const fu_linear_space *w)
+/* Solves for the dependent coordinates of `next`; returns nonzero without a solution. */
+static int follow(fu_run *run)
+{
+    if (!run->linear->n_moving) return 0;
+    fu_choose_path_segments(run);
+    const fu_coupling *failed = fu_solve_coordinates(run->model, &run->next);
+    return failed ? fu_fail(run, FU_LOST_RIDER, run->next.v, failed->number) : 0;
+}
+
+int fu_linear_kinematics(fu_run *run, const fu_linear_space *w)
 {
     const fu_model *model = run->model;
     fu_state *next = &run->next;
@@ -111,20 +117,22 @@ void fu_linear_kinematics(fu_run *run, const fu_linear_space *w)
     place(run, w);
     for (int i = 0; i < MOST_CLOSINGS && model->n_rows; ++i) {
         fu_evaluate_rows(model, next, &run->accelerator);
-        evaluate(run, POSITION, NULL, w->gaps);
+        fu_linear_gaps(run, w, FU_OF_POSITIONS, 0, NULL);
         if (close(run, w, w->motion.displacement) <= run->round_off) break;
         place(run, w);
     }
+    if (follow(run)) return 1;
     if (model->n_rows) {
-        evaluate(run, VELOCITY, next->v, w->gaps);
+        fu_linear_gaps(run, w, FU_OF_VELOCITIES, 0, next->v);
         close(run, w, next->v);
         fu_evaluate_rows(model, next, &run->accelerator); /* W is of the velocities */
-        evaluate(run, ACCELERATION, next->acceleration, w->gaps);
+        fu_linear_gaps(run, w, FU_OF_ACCELERATIONS, 0, next->acceleration);
         close(run, w, next->acceleration);
     }
     memcpy(w->motion.velocity, next->v, size);
     memcpy(w->motion.acceleration, next->acceleration, size);
     fu_update_deferred(run, 1);
+    return 0;
 }
 
 void fu_linear_exact_forces(const fu_run *run, const fu_linear_space *w)
@@ -136,13 +144,16 @@ void fu_linear_exact_forces(const fu_run *run, const fu_linear_space *w)
     fu_bodies_forces(model, next->q, next->v, w->force);
     fu_coupling_forces(model, next, w->force);
     fu_external_forces(model, next->t, next->q, w->force);
+    if (run->linear->n_moving) fu_linear_add_constraint_forces(run, w);
 }
 
 void fu_linear_multipliers(fu_run *run, const fu_linear_space *w)
 {
     const fu_linear_model *linear = run->linear;
     double *lambda = run->accelerator.multipliers;
-    memset(lambda, 0, sizeof(double) * (size_t)run->model->n_multipliers);
+    const size_t size = sizeof(double) * (size_t)run->model->n_multipliers;
+    if (linear->n_moving) memcpy(lambda, w->moving.lambda, size);
+    else memset(lambda, 0, size);
     for (int i = 0; i < linear->held.rows; ++i) {
         double force = 0.0;
         for (int k = linear->held.start[i]; k < linear->held.start[i + 1]; ++k) {
@@ -162,7 +173,7 @@ void fu_linear_reactions(fu_run *run, const fu_linear_space *w, double *reaction
     fu_add_times(NULL, run->model->n_dof, 1.0, w->force, reaction);
     for (int r = 0; r < run->model->n_rows; ++r) {
         const fu_rows *rows = &work->rows[r];
-        for (int c = 0; c < rows->rows; ++c)
+        for (int c = 0; c < rows->rows && !run->linear->moves[r]; ++c)
             for (int k = 0; k < rows->n; ++k)
                 reaction[rows->at[k]] += rows->H[c * rows->n + k] * work->multipliers[rows->first + c];
     }

@@ -55,7 +55,9 @@ static double shortest(const fu_run *run)
 /* Returns whether couplings must keep their path segments in a step, which ends where one leaves its segment. */
 static int must_keep_segments(const fu_run *run)
 {
-    return !is_adaptive(run) || !run->integrator->crosses_boundaries || fu_stop_at_boundaries(run->model);
+    const fu_integrator *integrator = run->integrator;
+    return (!is_adaptive(run) && !integrator->defers_all) || !integrator->crosses_boundaries ||
+           fu_stop_at_boundaries(run->model);
 }
 
 /* Returns whether couplings must have no deferred event in a step, which ends at one. */
@@ -174,7 +176,7 @@ static void find_event(fu_run *run, trial *t)
 {
     if (t->deferred && is_adaptive(run) && !(t->ratio <= 1.0)) refuse(run, t);
     t->event = fu_find_event(run, fu_no_event);
-    if (t->changes && (t->event.kind == FU_PATH_BOUNDARY || !(t->ratio <= 1.0))) {
+    if (t->changes && (t->event.kind == FU_PATH_BOUNDARY || (is_adaptive(run) && !(t->ratio <= 1.0)))) {
         fu_restore_path_segments(run);
         t->event = fu_find_event(run, fu_no_event);
     }

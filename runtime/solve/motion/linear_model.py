@@ -3,7 +3,8 @@
 Unknowns x of the scene without those of couplings, dofs = T x. The constraints H x = g(t) of joints, linear there,
 determine some unknowns by the others, the coordinates y: x = Z y + P g with H Z = 0 and H P = 1. Cables have matrices
 over the dofs, joints the stiffness of their forces at the start. All else has exact forces, whose derivatives at the
-start, with these matrices, make those over y, of which the steps have factors.
+start, with these matrices, make those over y, of which the steps have factors. Slides, whose constraints move, have no
+part in them: each step has their forces as unknowns.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from scipy.sparse.linalg import splu
 from ...engine import Engine
 from ...errors import SceneError
 from ...model.model import Model
+from ...parts.end_stops import Stop
 from ...parts.scene_data import SceneData
 from ...parts.settings import EquilibriumSettings
 from ..linear.condensation import condensed
@@ -28,6 +30,8 @@ from ..statics.static_problem import StaticState
 
 GROUP = 4
 """Columns that the engine eliminates at once: a band is at least this wide less one."""
+CONSTRAINTS = ("joint", "slide")
+"""Types of couplings with constraints that the linear model has."""
 NEGLIGIBLE = 1e-14
 """Of the largest entry of a matrix: entries below are rounding."""
 
@@ -107,27 +111,37 @@ def refuse_what_is_not_linear(scene: SceneData, model: Model) -> None:
     who, remedy = 'integrator "linear"', "take another integrator"
     for rope in scene.ropes.values():
         raise SceneError(rope.where, f"{who} does not support ropes that run over sheaves", remedy)
-    tied = {joint.name for joint in model.joints if joint.slide is not None}
+    for slide in scene.slides.values():
+        if slide.frame != "point":
+            raise SceneError(slide.where, f'{who} does not support the frame "{slide.frame}"',
+                             f'take the frame "point", or {remedy}')
+        if slide.friction is not None or any(isinstance(end, Stop) for end in (slide.at_start, slide.at_end)):
+            raise SceneError(slide.where, f"{who} does not support friction of slides and stops",
+                             f"leave them out, or {remedy}")
     for coupling in model.couplings:
         what = f'{coupling.type} "{coupling.name}"'.replace("_", " ")
-        if coupling.n_coordinates or coupling.name in tied:
-            raise SceneError(what, f"{who} does not support what slides along a cable by a constraint", remedy)
         if coupling.has_inertia:
             raise SceneError(what, f"{who} does not support added mass", f"leave it out, or {remedy}")
-        if coupling.n_multipliers and coupling.type != "joint":
-            raise SceneError(what, f"{who} supports constraints of joints alone", remedy)
+        if coupling.n_multipliers and coupling.type not in CONSTRAINTS:
+            raise SceneError(what, f"{who} supports constraints of joints and slides alone", remedy)
 
 
 def _matrices(static: StaticState) -> tuple[list[csr_array], csr_array]:
-    """Return mass, damping and stiffness over the unknowns, and the part of the stiffness by the forces of joints."""
+    """Return mass, damping and stiffness over the unknowns without slides, and the part by the forces of joints."""
     engine, model = static.engine, static.model
     n = model.n_band + model.n_border_dof
     kept = static.keep()
-    stiffness = condensed(engine.matrix(0.0, 0.0, 1.0), model)[0]
-    damping = condensed(engine.matrix(0.0, 1.0, 1.0), model)[0] - stiffness
+    without = {kind: np.zeros_like(kept[kind]) for kind in CONSTRAINTS if kind in kept}
+
+    def over_dofs(*weights: float) -> csr_array:
+        return csr_array(condensed(engine.matrix(*weights), model)[0])[:n][:, :n]
+
+    static.restore(kept | {kind: forces for kind, forces in without.items() if kind == "slide"})
+    stiffness = over_dofs(0.0, 0.0, 1.0)
+    damping = over_dofs(0.0, 1.0, 1.0) - stiffness
     mass = csr_array(engine.matrix(1.0, 0.0, 0.0).tocsr()[:n][:, :n])
-    static.restore(kept | {"joint": np.zeros_like(kept["joint"])} if "joint" in kept else kept)
-    joints = stiffness - condensed(engine.matrix(0.0, 0.0, 1.0), model)[0]
+    static.restore(kept | without)
+    joints = stiffness - over_dofs(0.0, 0.0, 1.0)
     static.restore(kept)
     return [mass, csr_array(damping), csr_array(stiffness)], _without_rounding(csr_array(joints), stiffness)
 
