@@ -275,6 +275,7 @@ cdef extern from * nogil:
     ctypedef struct fu_linear_model:
         int n, width, stride, n_moving
         const int *moves, *dof, *mixed
+        int *moving_start, *moving_column
         fu_sparse combinations, closing, read, held, joints
         fu_sparse *exact
         const double **matrices

@@ -65,6 +65,8 @@ cdef class LinearModels(Statics):
         m.n, m.width, m.stride = model.n, model.width, model.stride
         moves, m.n_moving = self._moving()
         m.moves = self._ints(moves)
+        m.moving_start = self._ints(np.zeros(m.n_moving + 1))
+        m.moving_column = self._ints(np.zeros(m.n_moving * m.n))
         m.dof, m.mixed = self._ints(model.dof), self._ints(model.mixed)
         self._sparse(&m.combinations, model.combinations)
         self._sparse(&m.closing, model.closing)

@@ -62,24 +62,45 @@ static void solve(const fu_linear_space *w, int n)
     fu_band_solve(n, width, w->moving.S, 0, w->moving.values);
 }
 
+/* Returns the product of the k-th row of H with coordinates. */
+static double row_times(const fu_linear_model *linear, const fu_linear_space *w, int k, const double *x)
+{
+    double sum = 0.0;
+    for (int i = linear->moving_start[k]; i < linear->moving_start[k + 1]; ++i)
+        sum += w->moving.H[i] * x[linear->moving_column[i]];
+    return sum;
+}
+
+/* Stores the entries of a row of H, given over all coordinates, as the k-th. */
+static void store_row(fu_linear_model *linear, const fu_linear_space *w, int k, const double *row)
+{
+    int n = linear->moving_start[k];
+    for (int i = 0; i < linear->n; ++i) {
+        if (row[i] == 0.0) continue;
+        linear->moving_column[n] = i;
+        w->moving.H[n++] = row[i];
+    }
+    linear->moving_start[k + 1] = n;
+}
+
 int fu_linear_condense(const fu_run *run, const fu_linear_space *w, double psi, const double *L)
 {
-    const fu_linear_model *linear = run->linear;
+    fu_linear_model *linear = run->linear;
     int m = 0;
     for (moving it = {0, -1, NULL}; next_of(run, &it); ++m) {
-        double *H = w->moving.H + (long)m * linear->n, *X = column_of(run, w, m);
+        double *X = column_of(run, w, m);
         memset(w->force, 0, sizeof(double) * (size_t)run->model->n_dof);
         add_row(&it, 1.0, w->force);
-        fu_linear_model_project(linear, w->force, H);
-        fu_set_times(NULL, linear->n, psi, H, X);
+        fu_linear_model_project(linear, w->force, X);
+        store_row(linear, w, m, X);
+        fu_set_times(NULL, linear->n, psi, X, X);
         fu_linear_model_solve(linear, L, X);
     }
     const int width = full_width(m);
     memset(w->moving.S, 0, sizeof(double) * (size_t)((m + FU_BAND_MORE(width)) * (width + 1)));
     for (int j = 0; j < m; ++j)
         for (int i = j; i < m; ++i)
-            w->moving.S[j * (width + 1) + i - j] =
-                fu_dot(linear->n, w->moving.H + (long)i * linear->n, column_of(run, w, j));
+            w->moving.S[j * (width + 1) + i - j] = row_times(linear, w, i, column_of(run, w, j));
     return m && fu_band_factor(m, width, w->moving.S);
 }
 
@@ -92,17 +113,18 @@ double fu_linear_gap(const fu_run *run)
 
 void fu_linear_change_multipliers(const fu_run *run, const fu_linear_space *w)
 {
-    const int n = run->linear->n;
+    const fu_linear_model *linear = run->linear;
     double *values = w->moving.values;
     int m = 0;
     for (moving it = {0, -1, NULL}; next_of(run, &it); ++m)
-        values[m] = w->gaps[it.rows->first + it.row] - fu_dot(n, column_of(run, w, m), w->left);
+        values[m] = w->gaps[it.rows->first + it.row] - fu_dot(linear->n, column_of(run, w, m), w->left);
     if (!m) return;
     solve(w, m);
     m = 0;
     for (moving it = {0, -1, NULL}; next_of(run, &it); ++m) {
         w->moving.lambda[it.rows->first + it.row] += values[m];
-        fu_add_times(NULL, n, values[m], w->moving.H + (long)m * n, w->left);
+        for (int i = linear->moving_start[m]; i < linear->moving_start[m + 1]; ++i)
+            w->left[linear->moving_column[i]] += values[m] * w->moving.H[i];
     }
 }
 
@@ -111,7 +133,7 @@ void fu_linear_keep_constraints(const fu_run *run, const fu_linear_space *w)
     const int n = run->linear->n;
     int m = 0;
     for (moving it = {0, -1, NULL}; next_of(run, &it); ++m)
-        w->moving.values[m] = fu_dot(n, w->moving.H + (long)m * n, w->change);
+        w->moving.values[m] = row_times(run->linear, w, m, w->change);
     if (!m) return;
     solve(w, m);
     for (int k = 0; k < m; ++k) fu_add_times(NULL, n, -w->moving.values[k], column_of(run, w, k), w->change);

@@ -32,8 +32,9 @@ struct fu_linear_model {
     int n, width, stride; /* coordinates; half bandwidth of their matrices; fu_add_half_bands_times of cables */
     int n_moving;         /* multipliers of constraints that move along cables, at most */
     const int *moves;     /* n_rows: whether constraints do; they have no part in `closing` */
-    const int *dof;       /* n: the dof that equals each coordinate; -1 for none */
-    const int *mixed;     /* the dofs that are combinations of coordinates, row by row */
+    int *moving_start, *moving_column; /* n_moving + 1, n_moving x n: entries of their rows over the coordinates */
+    const int *dof;                    /* n: the dof that equals each coordinate; -1 for none */
+    const int *mixed;                  /* the dofs that are combinations of coordinates, row by row */
     fu_sparse combinations;
     fu_sparse closing;                   /* what the constraints determine, by their rows, numbered as multipliers */
     fu_sparse held;                      /* that by the dofs, which it moves */

@@ -115,7 +115,7 @@ int fu_linear_kinematics(fu_run *run, const fu_linear_space *w)
     fu_linear_model_expand(run->linear, model->n_dof, w->next.rate, next->v);
     fu_linear_model_expand(run->linear, model->n_dof, w->next.second, next->acceleration);
     place(run, w);
-    for (int i = 0; i < MOST_CLOSINGS && model->n_rows; ++i) {
+    for (int i = 0; i < MOST_CLOSINGS && run->linear->held.rows; ++i) {
         fu_evaluate_rows(model, next, &run->accelerator);
         fu_linear_gaps(run, w, FU_OF_POSITIONS, 0, NULL);
         if (close(run, w, w->motion.displacement) <= run->round_off) break;

@@ -10,8 +10,8 @@ typedef struct {
     double *y, *rate, *second, *a;
 } fu_linear_coordinates;
 
-/* Constraints that move along cables: the multipliers in a step and at its start, zero for others; H, a row of n for
- * each, and X = psi A^-1 H', with S = H X factored; gaps, then changes of multipliers. */
+/* Constraints that move along cables: the multipliers in a step and at its start, zero for others; entries of
+ * H, and X = psi A^-1 H', with S = H X factored; gaps, then changes of multipliers. */
 typedef struct {
     double *lambda, *lambda_now, *H, *X, *S, *values;
 } fu_linear_constraints;
