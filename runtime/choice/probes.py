@@ -19,10 +19,11 @@ from ..solve.notes.sensitivity import GROWTH_TEXT
 from .motion import MOTION, samples
 from .remeshing import CableModel, S, remade
 
-RADAU_WORK, IMPLICIT_WORK, LINEAR_WORK, STEP_WORK = 7.0, 2.5, 1.0, 0.7
+RADAU_WORK, IMPLICIT_WORK, LINEAR_WORK, STEP_WORK, SLIDE_WORK = 7.0, 2.5, 1.0, 0.7, 0.3
 """Work of an iteration of radau, of the other implicit methods and of the linear model, and of a step of these, in
 evaluations of accelerations, measured on pendulums of 4 to 64 elements of each kind: radau has three stages and a
-complex system; the linear model on taut cables of 8 to 128 elements."""
+complex system; the linear model on taut cables of 8 to 128 elements. Of a slide in a step of the linear model: of 30 on
+a footbridge, and of 30 and 100 on a cable."""
 
 ROUNDING_TOLERANCE = 1e-12
 """Part of the largest value of a quantity that rounding may change."""
@@ -95,8 +96,10 @@ class Probe(Generic[S]):
         iterations = report.get("newton_iterations", 0)
         if report["integrator"] == "radau":
             return float(RADAU_WORK * iterations)
-        return float((LINEAR_WORK if report["integrator"] == "linear" else IMPLICIT_WORK) * iterations
-                     + STEP_WORK * report["steps"])
+        steps = report["steps"]
+        if report["integrator"] == "linear":
+            return float(LINEAR_WORK * iterations + (STEP_WORK + SLIDE_WORK * len(self.scene.slides)) * steps)
+        return float(IMPLICIT_WORK * iterations + STEP_WORK * steps)
 
 
 class Prober(Generic[S]):

@@ -116,7 +116,7 @@ static double solve(fu_run *run, const fu_linear_space *w, const step_weights *w
     }
     fu_add_times(NULL, linear->n, -1.0, w->left, w->linear);
     fu_set_times(NULL, linear->n, -weights->psi, w->left, w->change);
-    fu_linear_model_solve(linear, L, w->change);
+    fu_linear_model_solve(linear, L, 0, w->change);
     for (int k = 0; k < FU_MATRICES; ++k)
         fu_sparse_add_times(&linear->exact[k], -weights->of[k] / weights->psi, w->change, w->linear);
     ++run->statistics.newton_iterations;
@@ -236,7 +236,7 @@ static double error(fu_run *run, double h)
         run->work[i] = factor * (run->next.acceleration[i] - run->now.acceleration[i]);
     fu_mass_times(run->model, run->next.q, run->work, run->before);
     fu_linear_model_project(run->linear, run->before, w.change);
-    fu_linear_model_solve(run->linear, factor_of(run, h), w.change);
+    fu_linear_model_solve(run->linear, factor_of(run, h), 0, w.change);
     if (weights_of(run, h).closes) fu_linear_keep_constraints(run, &w);
     fu_linear_model_expand(run->linear, run->model->n_dof, w.change, run->work);
     return fu_error_size(run, run->work, fu_allowed_elsewhere(run));
@@ -284,7 +284,7 @@ static void note_error(fu_run *run, const fu_linear_space *w)
     fu_internal_forces(model, run->now.q, run->now.v, run->before);
     for (int i = fu_rope_dofs(model).first; i < model->n_dof; ++i) run->before[i] = 0.0; /* bodies are exact */
     fu_linear_model_project(linear, run->before, w->change);
-    fu_linear_model_solve(linear, linear->at_rest.L, w->change);
+    fu_linear_model_solve(linear, linear->at_rest.L, 0, w->change);
     const double size = size_of(run, w->change);
     if (size <= w->error[0]) return;
     w->error[0] = size;
@@ -301,7 +301,7 @@ static int correct_accelerations(fu_run *run, const fu_linear_space *w)
     fu_linear_gaps(run, w, FU_OF_ACCELERATIONS, 1, run->next.acceleration);
     fu_linear_change_multipliers(run, w);
     fu_set_times(NULL, linear->n, -1.0, w->left, w->change);
-    fu_linear_model_solve(linear, linear->of_mass.L, w->change);
+    fu_linear_model_solve(linear, linear->of_mass.L, 0, w->change);
     fu_linear_model_expand(linear, run->model->n_dof, w->change, run->work);
     fu_add_times(NULL, run->model->n_dof, 1.0, run->work, run->next.acceleration);
     memcpy(w->motion.acceleration, run->next.acceleration, sizeof(double) * (size_t)run->model->n_dof);
@@ -348,7 +348,7 @@ static int accelerate(fu_run *run, const fu_linear_space *w)
         take_multipliers(run, w->moving.lambda, w->moving.lambda_now);
     }
     fu_set_times(NULL, linear->n, -1.0, w->left, w->change);
-    fu_linear_model_solve(linear, linear->of_mass.L, w->change);
+    fu_linear_model_solve(linear, linear->of_mass.L, 0, w->change);
     memcpy(w->next.second, w->change, size);
     memcpy(w->next.a, w->change, size);
     return fu_linear_kinematics(run, w);

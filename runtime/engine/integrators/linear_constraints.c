@@ -71,8 +71,8 @@ static double row_times(const fu_linear_model *linear, const fu_linear_space *w,
     return sum;
 }
 
-/* Stores the entries of a row of H, given over all coordinates, as the k-th. */
-static void store_row(fu_linear_model *linear, const fu_linear_space *w, int k, const double *row)
+/* Stores the entries of a row of H, given over all coordinates, as the k-th; returns the place of the first. */
+static int store_row(fu_linear_model *linear, const fu_linear_space *w, int k, const double *row)
 {
     int n = linear->moving_start[k];
     for (int i = 0; i < linear->n; ++i) {
@@ -81,6 +81,7 @@ static void store_row(fu_linear_model *linear, const fu_linear_space *w, int k, 
         w->moving.H[n++] = row[i];
     }
     linear->moving_start[k + 1] = n;
+    return n > linear->moving_start[k] ? linear->moving_column[linear->moving_start[k]] : 0;
 }
 
 int fu_linear_condense(const fu_run *run, const fu_linear_space *w, double psi, const double *L)
@@ -92,9 +93,9 @@ int fu_linear_condense(const fu_run *run, const fu_linear_space *w, double psi, 
         memset(w->force, 0, sizeof(double) * (size_t)run->model->n_dof);
         add_row(&it, 1.0, w->force);
         fu_linear_model_project(linear, w->force, X);
-        store_row(linear, w, m, X);
+        const int first = store_row(linear, w, m, X);
         fu_set_times(NULL, linear->n, psi, X, X);
-        fu_linear_model_solve(linear, L, X);
+        fu_linear_model_solve(linear, L, first, X);
     }
     const int width = full_width(m);
     memset(w->moving.S, 0, sizeof(double) * (size_t)((m + FU_BAND_MORE(width)) * (width + 1)));

@@ -37,10 +37,10 @@ fu_step_factor *fu_step_factor_of(fu_linear_model *linear, double h, int *is_kno
     return oldest;
 }
 
-void fu_linear_model_solve(const fu_linear_model *linear, const double *L, double *x)
+void fu_linear_model_solve(const fu_linear_model *linear, const double *L, int first, double *x)
 {
     memset(x + linear->n, 0, sizeof(double) * FU_BAND_BEYOND(linear->width));
-    fu_band_solve(linear->n, linear->width, L, 0, x);
+    fu_band_solve(linear->n, linear->width, L, first, x);
 }
 
 void fu_linear_model_project(const fu_linear_model *linear, const double *force, double *y)

@@ -58,7 +58,8 @@ int fu_linear_model_start(fu_run *run);
 int fu_linear_model_factor(const fu_linear_model *linear, const double weights[FU_MATRICES], double *L);
 /* Returns the factor of a step, *is_known: made already. */
 fu_step_factor *fu_step_factor_of(fu_linear_model *linear, double h, int *is_known);
-void fu_linear_model_solve(const fu_linear_model *linear, const double *L, double *x);
+/* Solves with a factor; x is zero before `first`. */
+void fu_linear_model_solve(const fu_linear_model *linear, const double *L, int first, double *x);
 /* y += factor A x */
 void fu_sparse_add_times(const fu_sparse *A, double factor, const double *x, double *y);
 /* Computes y = S' f of forces on the dofs. */
