@@ -288,6 +288,16 @@ tolerance of 0.001 m.""",
                text="""`integrator="linear"`: one matrix about rest, with the droppers and the contact as they are;
 the reference model, two pantographs on the 55 m line, and numbers of spans, of which the first 0.5 s.""")]),
     Section(
+        "A footbridge under walkers",
+        """20 elements on two supports, at resonance with the paces of walkers whom slides drive along the deck, 13.3 s.
+The error is that of the deflection at mid-span, against ten modes of the beam with the moving masses.
+`integrator="linear"` has one matrix for all steps, and condenses each slide onto its forces.""",
+        [Table("footbridge",
+               {"walkers": "walkers", "integrator": "integrator", "step, ms": "step, ms",
+                "deflection, mm": "deflection, mm", "error %": "error, %", "steps": "steps",
+                "factorisations": "factorisations", "iterations a step": "iterations a step", "cpu s": "CPU s"})],
+        test="tests/motion/test_linear_model.py"),
+    Section(
         "A state with given values",
         """`scene.equilibrium(adjust=, to=)`: lengths of droppers to heights of the contact wire, heights of
 supports, loads; spans of 55 m with nine droppers and 22 elements a span in each wire. CPU time in s.""",
