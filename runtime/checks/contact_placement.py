@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from ..base.rotations import conjugate, rotate
 from ..engine import MAX_HARD_CONTACTS
 from ..errors import SceneError, near

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from ..base.deferred import dataclass
 from ..parts.rope import Rope
 from ..parts.rope_route import DrawnRoute
 from ..parts.scene_data import SceneData

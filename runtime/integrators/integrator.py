@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 from functools import cache
 from typing import ClassVar
 
 import numpy as np
+
+from ..base.deferred import dataclass
 
 
 @dataclass(frozen=True)

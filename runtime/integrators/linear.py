@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from ..base.deferred import dataclass
 from .genalpha import GeneralisedAlpha
 
 

@@ -12,7 +12,6 @@ import json
 import math
 import os
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -20,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pydantic import ValidationError
 
+from ..base.deferred import dataclass
 from ..errors import FunicularError, SceneError, shown_path
 from . import elements
 from .elements import MANIFEST, ElementKind

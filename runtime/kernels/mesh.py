@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from ..base.deferred import dataclass
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Hashable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, TypeVar
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from ..checks.frames import draws_section
 from ..parts.attachment import Attachment
 from ..parts.modal_body import ModalBody

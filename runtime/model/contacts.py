@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import product
 from typing import Any
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from ..engine import FRICTION_MARK, NO_TIME, SPAN_BEGIN, SPAN_STRETCH
 from ..kernels.element_line import along_elements
 from ..kernels.mesh import Mesh

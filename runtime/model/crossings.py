@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from ..engine import CROSSING_STICK
 from ..parts.attachment import Attachment
 from ..parts.crossing import Crossing

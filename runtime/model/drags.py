@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from ..kernels.element_line import along_elements
 from ..parts.attachment import Attachment
 from ..parts.cable import Cable

@@ -8,13 +8,14 @@ in the number of bodies. Groups that are eliminated together are a front (engine
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property, lru_cache
 from heapq import heapify, heappop, heappush
 from typing import Any
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from .system_layout import SystemLayout
 
 MAX_DENSE_BORDER = 60

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import comb
 from typing import Any
 
 import numpy as np
+
+from ..base.deferred import dataclass
 
 DEGREES = range(3, 8)
 """Degrees of the axis that are tried."""

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cache
 from typing import ClassVar
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from ..checks.frames import has_section, joint_axes, slide_axes
 from ..kernels.libraries import kernels_of
 from ..parts.joint import DRIVEN, Joint

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from ..checks.placement import placed_attachment
 from ..parts.attachment import Attachment
 from ..parts.load import DistributedForce, Force, Load, Moment

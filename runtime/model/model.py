@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import Any, ClassVar, Protocol, TypeVar, cast
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from ..kernels.libraries import kernels_of, of_library
 from ..kernels.mesh import Mesh
 from ..parts.body_shape import Shape

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+
+from ..base.deferred import dataclass
 
 
 @dataclass(eq=False, repr=False)

@@ -6,10 +6,11 @@ The quantities are those in ``results`` of the parts. All are along the ground's
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from ..base.rotations import sizes
 from ..engine import OUTPUTS, Engine, outputs_by_name
 from ..parts.scene_data import SceneData

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from ..kernels.elements import point_law
 from ..kernels.libraries import kernels_of
 from ..parts.force_segments import HAS_NO_FORCE, PULLS_AND_PUSHES

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from ..base.deferred import dataclass
 from ..parts.rope import Rope
 from ..parts.rope_items import Anchor, Drum, RouteItem, Sheave
 from ..parts.rope_route import DrawnRoute

@@ -15,11 +15,12 @@ at the last end the opposite.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from ..base.rotations import rotate
 from ..errors import SceneError
 from ..parts.rope_drawing import drawn_anew

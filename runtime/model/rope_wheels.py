@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from ..checks.rope_carriers import carried_groove, may_turn
 from ..parts.rope_items import SIDES, Drum, Sheave
 from ..parts.rope_route import MIN_WRAP

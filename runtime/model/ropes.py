@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from ..parts.load import Force
 from ..parts.locations import grips
 from ..parts.rope import Rope

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from ..parts.attachment import Attachment
 from ..parts.end_stops import Buffer, HardStop, Stop
 from ..parts.friction import Friction

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
+
+from ..base.deferred import dataclass
 
 KERNELS = {2: "span_cable8p", 3: "span_cable12"}
 """Kernels of spans, by the dimension of space."""

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
+
+from ..base.deferred import dataclass
 
 OF_FRONTS = ("start", "first", "pivots", "neighbours", "unknown", "in_parent", "parent", "child", "sibling", "front",
              "place")

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from .model import Model
 from .rope_model import RopeModel
 from .rope_states import grooves, points_of_spans

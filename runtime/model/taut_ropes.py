@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import pairwise
 from math import atan2, pi
 from typing import Protocol
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from ..checks.rope_carriers import carried_groove
 from ..parts.rope import Rope
 from ..parts.rope_items import SIDES, Drum, RouteItem, Sheave

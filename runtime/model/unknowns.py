@@ -10,11 +10,12 @@ would be the tangent of the other, and a moment would shear its last element, th
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from ..errors import SceneError
 from ..parts.scene_data import SceneData
 from ..parts.signal import Signal

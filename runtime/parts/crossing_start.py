@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from ..base.rotations import rotate
 from .attachment import Attachment
 from .cable import Cable

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import os
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..base.bounded_files import MAX_ARRAY_BYTES, TooLargeError, check_bytes, check_numbers
+from ..base.deferred import dataclass
 from ..errors import shown_path
 
 if TYPE_CHECKING:

@@ -1,12 +1,12 @@
 """Springs with piecewise linear tension: tension only, free play, tables."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
 from pydantic import model_validator
 
+from ..base.deferred import dataclass
 from .part import Part
 from .validation import check_function, list_of, show
 

@@ -5,7 +5,6 @@ Annotations are no texts: pydantic would evaluate those of the base once more fo
 
 import inspect
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import cache, cached_property
 from itertools import chain
 from types import MappingProxyType
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, get_args
 
 from pydantic import BaseModel, ConfigDict, PlainValidator, ValidationError, model_validator
 
+from ..base.deferred import dataclass
 from ..errors import SceneError, near, shown_path
 from .quantity import Quantity
 from .schemas import AXIS, DIRECTION, HOLDER, ORIENTATION, POINT, TABLE_OF, About, Check, Turning, checked

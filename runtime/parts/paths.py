@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from functools import cache
 from typing import Any, TypeVar
 
+from ..base.deferred import dataclass
 from ..errors import SceneError, near
 from .part import Part
 from .scene_data import SceneData

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from ..base.rotations import cross
 from .validation import show
 

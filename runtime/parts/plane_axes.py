@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from ..base.rotations import conjugate, product, quaternion, rotate
 from .kinds import TURNING
 from .part import Part

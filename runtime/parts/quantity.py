@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Final
 
+from ..base.deferred import dataclass
 from ..engine import OUTPUTS
 from .schemas import DIRECTION, ORIENTATION, POINT
 

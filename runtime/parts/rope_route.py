@@ -8,12 +8,13 @@ the length l and u. An end of the rope is a sheave of radius 0.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import pairwise
 from math import atan2, hypot, pi, tau
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from .validation import show
 
 MIN_WRAP = 1e-3

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Annotated, Any
 
 from pydantic import PlainValidator
+
+from ..base.deferred import dataclass
 
 
 class GivenAs:
@@ -56,7 +59,7 @@ class FileEntry:
 About = Turning | Place | FileEntry
 
 
-@dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True)  # as the class of pydantic that it extends
 class Check(PlainValidator):
     """A check of values; about: how vectors turn, the cable of an arc-length, or that it is a path."""
 

@@ -6,12 +6,12 @@ A further law is one function and one entry in `_BY_KIND`, or in `variants` if i
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache
 from typing import cast
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from ..kernels.elements import built_in_laws
 from .material import Material
 from .section import Section

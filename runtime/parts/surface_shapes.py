@@ -5,13 +5,14 @@
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import lru_cache
 from typing import Annotated, Any
 
 import numpy as np
 from pydantic import model_validator
 
+from ..base.deferred import dataclass
 from .height_bounds import height_bounds
 from .part import Family, Part
 from .plane import PLANE_ROUNDING, aligned

@@ -1,13 +1,13 @@
 """The velocity of a fluid on a grid in time and space, from numbers or a file."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from pydantic import model_validator
 
+from ..base.deferred import dataclass
 from ..errors import near
 from .data_files import MAX_NUMBERS, FileArrays, arrays_of
 from .part import Part

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from ..base.deferred import dataclass
 from ..checks.velocity_jumps import velocity_jumps
 from ..engine import Engine
 from ..model.model import Model

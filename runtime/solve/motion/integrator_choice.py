@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
 import numpy as np
 
+from ...base.deferred import dataclass
 from ...engine import Engine
 from ...errors import SceneError
 from ...integrators import AUTO, INTEGRATORS, Demands, Explicit, Integrator, Radau, stable_at

@@ -6,8 +6,8 @@ import importlib.util
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 
+from ...base.deferred import dataclass
 from ...base.notebook import in_notebook
 
 OnProgress = Callable[[float], None]

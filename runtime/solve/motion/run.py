@@ -6,12 +6,12 @@ import logging
 import time
 import warnings
 from collections.abc import Callable, Container
-from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
+from ...base.deferred import dataclass
 from ...base.interruptions import interruptible
 from ...checks.plausibility import implausible
 from ...checks.velocity_jumps import velocity_jumps

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
+from ...base.deferred import dataclass
 from ...parts.scene_data import SceneData
 
 if TYPE_CHECKING:  # bring SciPy
