@@ -41,7 +41,7 @@ cdef size_t _own_tables() except 0:
 cdef _take_lapack():
     """Attach the functions of LAPACK that the engine names, those of SciPy.
 
-    Runs call this, not `import funicular`, which does without SciPy.
+    Models with large borders call this, not all, which would load SciPy and start its threads.
     """
     global has_lapack
     cdef int k = 0

@@ -1,5 +1,5 @@
-/* Random systems of the engine's own linear algebra: bands, complex bands, inverses of bands, small matrices. Prints
- * the largest residual of each, of 400, in units of rounding; tests/engine/test_small_systems.py.
+/* Random systems of the engine's own linear algebra: bands, complex bands, inverses of bands, small matrices, bands
+ * with pivots. Prints the largest residual of each, of 400, in units of rounding; tests/engine/test_small_systems.py.
  */
 #include "linear/complex_system.h"
 
@@ -132,11 +132,56 @@ static double small_matrix(int n)
     return worst;
 }
 
+/* A band, or a full matrix if it is as wide, with zeros and rows that must be exchanged, and junk where the fill comes:
+ * what is left of its equations with real numbers, or with the same ones times a complex factor. */
+static double pivoted(int n, int width, int full, int complex)
+{
+    static double K[FU_BAND_ROWS(MAX_WIDTH) * MAX_SIZE];
+    static fu_complex Z[FU_BAND_ROWS(MAX_WIDTH) * MAX_SIZE], z[MAX_SIZE];
+    static int pivot[MAX_SIZE];
+    const int stride = full ? n : FU_BAND_STRIDE(width), diagonal = full ? 0 : FU_BAND_DIAGONAL(width);
+    const fu_complex factor = {0.3, -0.8};
+    double worst = 0.0, size = 1.0;
+    for (int i = 0; i < FU_BAND_ROWS(MAX_WIDTH) * MAX_SIZE; ++i) Z[i].re = Z[i].im = K[i] = number();
+    for (int i = 0; i < n * n; ++i) A[i] = 0.0;
+    for (int j = 0; j < n; ++j)
+        for (int i = j > width ? j - width : 0; i < n && i - j <= width; ++i) {
+            A[j * n + i] = i == j + width || rand() % 3 ? number() : 0.0;
+            K[diagonal + j * stride + i] = A[j * n + i];
+            Z[diagonal + j * stride + i] = (fu_complex){A[j * n + i] * factor.re, A[j * n + i] * factor.im};
+        }
+    for (int i = 0; i < n; ++i) {
+        bx[i] = x[i] = number();
+        z[i] = (fu_complex){bx[i], 0.0};
+    }
+    if (complex ? fu_complex_pivoted_factor(n, width, stride, Z + diagonal, pivot)
+                : fu_pivoted_factor(n, width, stride, K + diagonal, pivot))
+        return 0.0; /* singular: the residuals of others count */
+    if (complex) fu_complex_pivoted_solve(n, width, stride, Z + diagonal, pivot, z);
+    else fu_pivoted_solve(n, width, stride, K + diagonal, pivot, x);
+    for (int i = 0; i < n; ++i) {
+        const fu_complex product = fu_complex_product(factor, z[i]);
+        if (complex) x[i] = product.re;
+        y[i] = complex ? product.im : 0.0;
+        size = larger(size, larger(fabs(x[i]), fabs(y[i])));
+    }
+    for (int i = 0; i < n; ++i) {
+        double left = -bx[i], imaginary = 0.0;
+        for (int j = 0; j < n; ++j) {
+            left += A[j * n + i] * x[j];
+            imaginary += A[j * n + i] * y[j];
+        }
+        worst = larger(worst, larger(fabs(left), fabs(imaginary)));
+    }
+    return worst / size;
+}
+
 int main(void)
 {
-    double real = 0.0, band = 0.0, unsymmetric = 0.0, inverted = 0.0, small = 0.0;
+    double real = 0.0, band = 0.0, unsymmetric = 0.0, inverted = 0.0, small = 0.0, exchanged = 0.0;
     int pivot[2];
-    double singular[4] = {1.0, 2.0, 2.0, 4.0};
+    double singular[4] = {1.0, 2.0, 2.0, 4.0}, row[2] = {0.0, 0.0};
+    fu_complex zero[4] = {{1.0, 1.0}, {2.0, 2.0}, {2.0, 2.0}, {4.0, 4.0}};
     for (int k = 0; k < CASES; ++k) {
         const int n = 1 + rand() % MAX_SIZE, width = FU_BAND_GROUP - 1 + rand() % (MAX_WIDTH - FU_BAND_GROUP);
         real = larger(real, real_band(n, FU_BAND_GROUP - 1 + rand() % (WIDE - FU_BAND_GROUP + 2)));
@@ -144,8 +189,15 @@ int main(void)
         unsymmetric = larger(unsymmetric, complex_band(n, width, 0));
         inverted = larger(inverted, inverse(n, width));
         small = larger(small, small_matrix(1 + rand() % FU_MAX_SMALL));
+        const int size = 1 + rand() % FU_MAX_SMALL;
+        for (int complex = 0; complex < 2; ++complex) {
+            exchanged = larger(exchanged, pivoted(n, rand() % MAX_WIDTH, 0, complex));
+            exchanged = larger(exchanged, pivoted(size, size - 1, 1, complex));
+        }
     }
-    printf("%g %g %g %g %g %d\n", real / DBL_EPSILON, band / DBL_EPSILON, unsymmetric / DBL_EPSILON,
-           inverted / DBL_EPSILON, small / DBL_EPSILON, fu_small_factor(2, singular, pivot));
+    printf("%g %g %g %g %g %g", real / DBL_EPSILON, band / DBL_EPSILON, unsymmetric / DBL_EPSILON,
+           inverted / DBL_EPSILON, small / DBL_EPSILON, exchanged / DBL_EPSILON);
+    printf(" %d %d %d\n", fu_small_factor(2, singular, pivot), fu_pivoted_factor(2, 0, 0, row, pivot),
+           fu_complex_pivoted_factor(2, 1, 2, zero, pivot));
     return 0;
 }

@@ -331,7 +331,8 @@ cdef extern from * nogil:
         long (*n_dissipation_state)(const fu_run *run) noexcept nogil
     const fu_integrator *fu_integrator_of(const char *name)
     void fu_linearise(fu_run *run, double h, const double *change)
-    int fu_system_factor_band(fu_system *system, const fu_lapack *lapack)
+    bint fu_needs_lapack(const fu_system *system)
+    int fu_system_factor_band(fu_system *system)
     int fu_system_factor_border(fu_system *system, const fu_lapack *lapack)
     void fu_system_solve(const fu_system *system, const fu_lapack *lapack, double *x)
     void fu_static_move(fu_run *run, const double *change)

@@ -68,7 +68,7 @@ cdef class Statics(Translation):
             raise ValueError(f"right must have {total} entries")
         for i in range(total):
             self.run.rhs[i] = given[i]
-        if fu_system_factor_band(&self.run.newton, &LAPACK) or fu_system_factor_border(&self.run.newton, &LAPACK):
+        if fu_system_factor_band(&self.run.newton) or fu_system_factor_border(&self.run.newton, &LAPACK):
             raise ArithmeticError("singular")
         fu_system_solve(&self.run.newton, &LAPACK, self.run.rhs)
         used = {self.run.newton.factorisations[c] for c in range(self.run.newton.n_chains)}

@@ -50,7 +50,6 @@ cdef class Translation(Arrays):
             PyMem_Free(<void *><size_t>pointer)
 
     def __init__(self, model, blocks=True):
-        _take_lapack()
         tables = [_own_tables(), *model.tables]
         self._bodies_and_cables(model, tables, blocks)
         m = &self.model
@@ -334,6 +333,8 @@ cdef class Translation(Arrays):
         self._factors(&system.factors, elimination)
         self._strips(system, layout, numbers)
         system.fronts, system.chains = fronts, numbers + <int>layout.first["chains"]
+        if fu_needs_lapack(system):
+            _take_lapack()
         system.half = numbers + <int>layout.first["half"]
         system.D, system.mirror = self._zeros(elimination.size + 1.0), self._zeros(n)
         factor = (width + 1.0) * (n + <double>FU_BAND_MORE(width) * chains)

@@ -44,9 +44,9 @@ int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
     fu_dynamic_matrix(model, model->zero, model->zero, 1.0, 0.0, 0.0, s);
     fu_bodies_mass(model, model->zero, 1, s);
     memcpy(work->corner, s->D, sizeof(double) * (size_t)s->fronts->size);
-    if (fu_system_factor_band(s, model->lapack)) return 1;
+    if (fu_system_factor_band(s)) return 1;
     fu_system_invert_band(s);
-    fu_system_keep_border(s, model->lapack, model->n_border_dof);
+    fu_system_keep_border(s, model->n_border_dof);
     return !s->definite; /* otherwise it would be in K, which the Newton matrix overwrites */
 }
 
@@ -59,7 +59,7 @@ static int whole(const fu_model *model, const double *q, fu_accelerator *work)
     fu_dynamic_matrix(model, q, model->zero, 1.0, 0.0, 0.0, s);
     for (int constant = 0; constant < 2; ++constant) fu_bodies_mass(model, q, constant, s);
     fu_coupling_masses(model, q, 1.0, s);
-    return fu_system_factor_band(s, model->lapack) || !s->definite;
+    return fu_system_factor_band(s) || !s->definite;
 }
 
 /* Computes the border of M, and the band if it depends on the configuration; returns 0, or nonzero if that is not

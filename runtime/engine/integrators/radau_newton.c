@@ -73,7 +73,7 @@ static int make_and_factor_band(fu_run *run, double h)
     for (;;) {
         make_matrices(run, h);
         memcpy(w->D_real, s->D, sizeof(double) * (size_t)s->fronts->size);
-        const int info = fu_system_factor_band(s, run->model->lapack);
+        const int info = fu_system_factor_band(s);
         if (s->definite || !w->newton.is_lower) return info;
         w->newton.is_lower = 0; /* from now on, since it may stay so */
     }

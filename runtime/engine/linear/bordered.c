@@ -62,10 +62,15 @@ static int factor_unpivoted(fu_system *s, int chain)
     return fu_unsymmetric_pack(s, chain, L, U) && !fu_unsymmetric_factor(size_of(s, chain), s->width, L, U);
 }
 
-/* Factors each chain by the fastest applicable method; returns 0, or 1 + the row at which the band is singular. */
-int fu_system_factor_band(fu_system *s, const fu_lapack *lapack)
+/* Returns the diagonal of the first column of a chain. */
+static double *diagonal_of(const fu_system *s, int chain)
 {
-    int width = s->width, rows = FU_BAND_ROWS(width), info = 0;
+    return s->K + (long)s->chains[chain] * FU_BAND_ROWS(s->width) + FU_BAND_DIAGONAL(s->width);
+}
+
+/* Factors each chain by the fastest applicable method; returns 0, or 1 + the row at which the band is singular. */
+int fu_system_factor_band(fu_system *s)
+{
     s->definite = 1;
     s->is_full = 0;
     for (int c = 0; c < s->n_chains; ++c) {
@@ -74,8 +79,8 @@ int fu_system_factor_band(fu_system *s, const fu_lapack *lapack)
                                                         : FU_PIVOTED;
         s->definite &= s->factorisations[c] == FU_SYMMETRIC;
         if (s->factorisations[c] != FU_PIVOTED) continue;
-        int n = size_of(s, c), first = s->chains[c];
-        lapack->dgbtrf(&n, &n, &width, &width, s->K + (long)first * rows, &rows, s->pivot_band + first, &info);
+        const int first = s->chains[c], stride = FU_BAND_STRIDE(s->width);
+        const int info = fu_pivoted_factor(size_of(s, c), s->width, stride, diagonal_of(s, c), s->pivot_band + first);
         if (info) return first + info;
     }
     return 0;
@@ -106,9 +111,9 @@ static void multiply_chain(const fu_system *s, int chain, fu_span of, double *x)
 }
 
 /* Computes x = K^-1 x in a chain, with x zero outside of these rows. */
-static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, fu_span of, double *x)
+static void solve_chain(const fu_system *s, int chain, fu_span of, double *x)
 {
-    int n = size_of(s, chain), start = s->chains[chain], width = s->width, rows = FU_BAND_ROWS(width), one = 1, info;
+    const int n = size_of(s, chain), start = s->chains[chain], width = s->width;
     if (s->inverted) multiply_chain(s, chain, (fu_span){of.first - start, of.end - start}, x + start);
     else if (s->factorisations[chain] == FU_SYMMETRIC && fu_is_twisted(s, chain)) fu_twisted_solve(s, chain, of, x);
     else if (s->factorisations[chain] == FU_SYMMETRIC)
@@ -116,9 +121,7 @@ static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, 
     else if (s->factorisations[chain] == FU_UNPIVOTED) {
         fu_band_forward(n, width, s->L + fu_factor_at(s, chain), of.first - start, x + start);
         fu_band_backward(n, width, s->U + fu_factor_at(s, chain), x + start);
-    } else
-        lapack->dgbtrs("N", &n, &width, &width, &one, s->K + (long)start * rows, &rows, s->pivot_band + start,
-                       x + start, &n, &info);
+    } else fu_pivoted_solve(n, width, FU_BAND_STRIDE(width), diagonal_of(s, chain), s->pivot_band + start, x + start);
 }
 
 /* Returns whether a strip has entries of B or C. */
@@ -192,7 +195,7 @@ int fu_list_blocks(const fu_system *s, int strip, const fu_span rows[FU_HALVES],
 }
 
 /* Computes a column of X = K^-1 B in a chain. */
-static void solve_column(fu_system *s, const fu_lapack *lapack, int strip)
+static void solve_column(fu_system *s, int strip)
 {
     const int chain = s->strips[strip].chain, begin = s->chains[chain], end = s->chains[chain + 1];
     const fu_span *of = s->span_B + FU_HALVES * strip;
@@ -203,7 +206,7 @@ static void solve_column(fu_system *s, const fu_lapack *lapack, int strip)
     for (int i = begin; i < end + FU_BAND_BEYOND(s->width); ++i) x[i] = 0.0;
     for (int half = 0; half < FU_HALVES; ++half)
         for (int i = of[half].first; i < of[half].end; ++i) x[i] = B[i];
-    solve_chain(s, lapack, chain, (fu_span){of[of[0].end == 0].first, of[of[1].end != 0].end}, x);
+    solve_chain(s, chain, (fu_span){of[of[0].end == 0].first, of[of[1].end != 0].end}, x);
     fu_find_significant(s, strip, x, rows);
 }
 
@@ -226,7 +229,7 @@ static void list_strips(fu_system *s)
 }
 
 /* Computes the columns of X that are not constant, and lists the blocks of X and C. */
-static void couple(fu_system *s, const fu_lapack *lapack)
+static void couple(fu_system *s)
 {
     if (!s->is_listed) list_strips(s);
     for (int c = 0; c < s->n_chains; ++c) {
@@ -235,7 +238,7 @@ static void couple(fu_system *s, const fu_lapack *lapack)
         s->n_columns[c] = s->n_rows[c] = 0;
         for (int i = s->chain_start[c]; i < s->chain_start[c + 1]; ++i) {
             const int strip = s->on_chain[i];
-            if (s->strips[strip].k >= s->constant) solve_column(s, lapack, strip);
+            if (s->strips[strip].k >= s->constant) solve_column(s, strip);
             s->n_rows[c] += fu_list_blocks(s, strip, s->span_C + FU_HALVES * strip, rows + s->n_rows[c]);
             s->n_columns[c] += fu_list_blocks(s, strip, s->span_X + FU_HALVES * strip, columns + s->n_columns[c]);
         }
@@ -243,9 +246,9 @@ static void couple(fu_system *s, const fu_lapack *lapack)
 }
 
 /* Keeps the first `columns` columns and rows of the border constant, beside a factored band. */
-void fu_system_keep_border(fu_system *s, const fu_lapack *lapack, int columns)
+void fu_system_keep_border(fu_system *s, int columns)
 {
-    couple(s, lapack);
+    couple(s);
     s->constant = columns;
     s->is_listed = 0;
 }
@@ -257,13 +260,19 @@ void fu_system_release_border(fu_system *s)
     s->is_listed = 0;
 }
 
+/* Returns whether a system of this border, real or complex, calls LAPACK. */
+int fu_needs_lapack(const fu_system *s)
+{
+    return s->fronts->n > 1 || s->m > FU_MAX_SMALL;
+}
+
 /* Computes and factors the Schur complement of the factored band, D - C K^-1 B, in place of D or beside it; returns 0,
  * or 1 + the unknown of the border at which it is singular. */
 int fu_system_factor_border(fu_system *s, const fu_lapack *lapack)
 {
     int m = s->m, info = 0;
     if (!m) return 0;
-    couple(s, lapack);
+    couple(s);
     for (int c = 0; c < s->n_chains; ++c) {
         const int start = FU_HALVES * s->chain_start[c];
         const fu_matrix_block *columns = s->columns + start, *rows = s->rows + start;
@@ -324,7 +333,7 @@ void fu_system_solve(const fu_system *s, const fu_lapack *lapack, double *x)
         return;
     }
     clear_beyond(s, y);
-    for (int c = 0; c < s->n_chains; ++c) solve_chain(s, lapack, c, (fu_span){s->chains[c], s->chains[c + 1]}, x);
+    for (int c = 0; c < s->n_chains; ++c) solve_chain(s, c, (fu_span){s->chains[c], s->chains[c + 1]}, x);
     if (!s->m) return;
     for (int c = 0; c < s->n_chains; ++c) {
         const fu_matrix_block *rows = s->rows + FU_HALVES * s->chain_start[c];

@@ -119,33 +119,37 @@ static int factor_unpivoted(fu_complex_system *c, const fu_system *s, int chain)
     return fu_complex_unsymmetric_factor(n, s->width, L, U);
 }
 
+/* Returns the diagonal of the first column of a chain. */
+static fu_complex *diagonal_of(const fu_complex_system *c, const fu_system *s, int chain)
+{
+    return c->K + s->chains[chain] * storage_rows(s) + FU_BAND_DIAGONAL(s->width);
+}
+
 /* Factors the band: a chain without pivots if the real one was factored so, since the complex one then has no small
  * pivots; symmetric ones excepted, all of it must be present. Returns 0, or nonzero if it is singular. */
-static int factor_band(fu_complex_system *c, const fu_system *s, const fu_lapack *lapack)
+static int factor_band(fu_complex_system *c, const fu_system *s)
 {
-    int width = s->width, rows = FU_BAND_ROWS(width), info = 0;
     for (int chain = 0; chain < s->n_chains; ++chain) {
-        int first = s->chains[chain], n = s->chains[chain + 1] - first;
+        const int first = s->chains[chain], n = s->chains[chain + 1] - first;
         c->factorisations[chain] = s->factorisations[chain];
         if (c->factorisations[chain] != FU_PIVOTED && factor_unpivoted(c, s, chain))
             c->factorisations[chain] = FU_PIVOTED;
-        if (n && c->factorisations[chain] == FU_PIVOTED)
-            lapack->zgbtrf(&n, &n, &width, &width, c->K + first * storage_rows(s), &rows, c->pivot_band + first, &info);
+        if (c->factorisations[chain] != FU_PIVOTED) continue;
+        const int info = fu_complex_pivoted_factor(n, s->width, FU_BAND_STRIDE(s->width), diagonal_of(c, s, chain),
+                                                   c->pivot_band + first);
         if (info) return first + info;
     }
     return 0;
 }
 
 /* Computes x = K^-1 x in a chain, with x zero before the row `from`. */
-static void solve_chain(const fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, int chain, int from,
-                        fu_complex *x)
+static void solve_chain(const fu_complex_system *c, const fu_system *s, int chain, int from, fu_complex *x)
 {
-    int first = s->chains[chain], n = s->chains[chain + 1] - first, width = s->width, rows = FU_BAND_ROWS(width);
-    int one = 1, info;
+    const int first = s->chains[chain], n = s->chains[chain + 1] - first, width = s->width;
     if (!n) return;
     if (c->factorisations[chain] == FU_PIVOTED) {
-        lapack->zgbtrs("N", &n, &width, &width, &one, c->K + first * storage_rows(s), &rows, c->pivot_band + first,
-                       x + first, &n, &info);
+        fu_complex_pivoted_solve(n, width, FU_BAND_STRIDE(width), diagonal_of(c, s, chain), c->pivot_band + first,
+                                 x + first);
         return;
     }
     const long at = (long)first * FU_COMPLEX_STRIDE(width);
@@ -161,15 +165,14 @@ static void solve_chain(const fu_complex_system *c, const fu_system *s, const fu
 
 /* Computes a column of X in a chain and lists its significant blocks, unless B is empty there; returns their number.
  * size: work space of the band's size. */
-static int solve_column(fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, int strip, double *size,
-                        fu_matrix_block *blocks)
+static int solve_column(fu_complex_system *c, const fu_system *s, int strip, double *size, fu_matrix_block *blocks)
 {
     const fu_span *of = s->span_B + FU_HALVES * strip;
     const int chain = s->strips[strip].chain, first = s->chains[chain], end = s->chains[chain + 1];
     fu_complex *x = c->X + s->strips[strip].at, *B = c->B + s->strips[strip].at;
     if (!of[0].end && !of[1].end) return 0;
     memcpy(x + first, B + first, sizeof(fu_complex) * (size_t)(end - first));
-    solve_chain(c, s, lapack, chain, of[of[0].end == 0].first, x);
+    solve_chain(c, s, chain, of[of[0].end == 0].first, x);
     for (int i = first; i < end; ++i) size[i] = fabs(x[i].re) + fabs(x[i].im);
     fu_span rows[FU_HALVES];
     fu_find_significant(s, strip, size, rows);
@@ -194,16 +197,17 @@ static void subtract(fu_complex_system *c, const fu_system *s, int chain)
  * doubles as the band has columns. Returns 0, or nonzero if it is singular. */
 int fu_complex_system_factor(fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, double *size)
 {
-    int m = s->m, info = factor_band(c, s, lapack);
+    int m = s->m, info = factor_band(c, s);
     if (info || !m) return info;
     for (int chain = 0; chain < s->n_chains; ++chain) {
         fu_matrix_block *columns = c->columns + FU_HALVES * s->chain_start[chain];
         c->n_columns[chain] = 0;
         for (int i = s->chain_start[chain]; i < s->chain_start[chain + 1]; ++i)
-            c->n_columns[chain] += solve_column(c, s, lapack, s->on_chain[i], size, columns + c->n_columns[chain]);
+            c->n_columns[chain] += solve_column(c, s, s->on_chain[i], size, columns + c->n_columns[chain]);
         subtract(c, s, chain);
     }
     if (s->fronts->n > 1) return fu_complex_fronts_factor(s->fronts, c->D, &c->factors, lapack);
+    if (!fu_needs_lapack(s)) return fu_complex_pivoted_factor(m, m - 1, m, c->D, c->pivot_border);
     lapack->zgetrf(&m, &m, c->D, &m, c->pivot_border, &info);
     return info;
 }
@@ -213,7 +217,7 @@ void fu_complex_system_solve(const fu_complex_system *c, const fu_system *s, con
 {
     int m = s->m, one = 1, info;
     fu_complex *x = c->x, *y = x + s->n;
-    for (int chain = 0; chain < s->n_chains && s->n; ++chain) solve_chain(c, s, lapack, chain, s->chains[chain], x);
+    for (int chain = 0; chain < s->n_chains && s->n; ++chain) solve_chain(c, s, chain, s->chains[chain], x);
     if (!m) return;
     for (int chain = 0; chain < s->n_chains; ++chain) {
         const fu_matrix_block *rows = s->rows + FU_HALVES * s->chain_start[chain];
@@ -222,6 +226,7 @@ void fu_complex_system_solve(const fu_complex_system *c, const fu_system *s, con
                 fu_complex_subtract_product(&y[r->k], c->C[s->strips[r->strip].at + i], x[i]);
     }
     if (s->fronts->n > 1) fu_complex_fronts_solve(s->fronts, &c->factors, y);
+    else if (!fu_needs_lapack(s)) fu_complex_pivoted_solve(m, m - 1, m, c->D, c->pivot_border, y);
     else lapack->zgetrs("N", &m, &one, c->D, &m, c->pivot_border, y, &m, &info);
     for (int chain = 0; chain < s->n_chains; ++chain) {
         const fu_matrix_block *columns = c->columns + FU_HALVES * s->chain_start[chain];

@@ -1,4 +1,5 @@
-/* Complex matrices in the layout of an fu_system: linear/complex_system.c, linear/complex_band.c. */
+/* Complex matrices in the layout of an fu_system: linear/complex_system.c, linear/complex_band.c,
+ * linear/complex_pivoted.c. */
 #ifndef FUNICULAR_LINEAR_COMPLEX_SYSTEM_H
 #define FUNICULAR_LINEAR_COMPLEX_SYSTEM_H
 
@@ -12,6 +13,8 @@
 void fu_complex_band_factor(int n, int width, double *re, double *im);
 void fu_complex_band_add(int n, int width, const double *K, fu_complex factor, double *re, double *im);
 int fu_complex_unsymmetric_factor(int n, int width, double *const L[2], double *const U[2]);
+int fu_complex_pivoted_factor(int n, int width, int stride, fu_complex *A, int *pivot);
+void fu_complex_pivoted_solve(int n, int width, int stride, const fu_complex *A, const int *pivot, fu_complex *x);
 void fu_complex_band_solve(int n, int width, double *const L[2], double *const U[2], int first, double *x, double *y);
 
 /* [K B; C D] in the form of an fu_system, combined from real systems with several weights. */
@@ -24,7 +27,7 @@ typedef struct {
     int *pivot_band, *pivot_border;
     int is_lower;        /* the band is in L, its lower half, else in K, all of it */
     double *L[2], *U[2]; /* FU_COMPLEX_STRIDE x n, real and imaginary parts (complex_band.c) */
-    int *factorisations; /* n_chains: factorisation of each: in L, in L and U, in K (zgbtrf) */
+    int *factorisations; /* n_chains: factorisation of each: in L, in L and U, in K */
     double *right[2];    /* n + FU_COMPLEX_BEYOND: a right side of the band, likewise */
 } fu_complex_system;
 

@@ -35,7 +35,7 @@ int fu_system_factor(fu_system *s, const fu_lapack *lapack)
         copy(s, s->full);
         return s->D[s->fronts->size] != 0.0 ? s->n + 1 : fu_small_factor(s->n + s->m, s->full, s->pivot_full);
     }
-    info = fu_system_factor_band(s, lapack);
+    info = fu_system_factor_band(s);
     if (info) return info;
     info = fu_system_factor_border(s, lapack);
     return info ? s->n + info : 0;

@@ -1,5 +1,5 @@
 /* Banded matrices with a border, and LAPACK for their parts: linear/band.c, linear/bordered.c,
- * linear/unsymmetric_band.c, linear/inverse.c, linear/small.c, linear/full.c. */
+ * linear/unsymmetric_band.c, linear/pivoted.c, linear/inverse.c, linear/small.c, linear/full.c. */
 #ifndef FUNICULAR_LINEAR_LINEAR_H
 #define FUNICULAR_LINEAR_LINEAR_H
 
@@ -7,13 +7,12 @@
 #include "linear/fronts.h"
 #include "base/threads.h"
 
-/* The functions of LAPACK that the engine calls, with their arguments; linear/lapack.c. */
+/* The functions of LAPACK that systems with large borders call (fu_needs_lapack), with their arguments;
+ * linear/lapack.c. */
 #define FU_LAPACK_FUNCTIONS(LAPACK)                                                                                    \
     LAPACK(dgbtrf, int *, int *, int *, int *, double *, int *, int *, int *)                                          \
-    LAPACK(dgbtrs, char *, int *, int *, int *, int *, double *, int *, int *, double *, int *, int *)                 \
     LAPACK(dgetrf, int *, int *, double *, int *, int *, int *)                                                        \
     LAPACK(zgbtrf, int *, int *, int *, int *, void *, int *, int *, int *)                                            \
-    LAPACK(zgbtrs, char *, int *, int *, int *, int *, void *, int *, int *, void *, int *, int *)                     \
     LAPACK(zgetrf, int *, int *, void *, int *, int *, int *)                                                          \
     LAPACK(zgetrs, char *, int *, int *, void *, int *, int *, void *, int *, int *)                                   \
     LAPACK(dgetrs, char *, int *, int *, double *, int *, int *, double *, int *, int *)
@@ -46,10 +45,11 @@ void fu_lapack_attach(fu_lapack *lapack, int k, const void *function);
 #define FU_TWISTED_FROM 1024
 #define FU_BAND_MORE(width) ((width) + 3 * FU_BAND_GROUP)
 
-/* LAPACK's band storage for a factorisation with pivots: its rows, and the row of the diagonal. Above the 2 width + 1
- * rows of the band there are width more for the fill of pivots. */
+/* LAPACK's band storage for a factorisation with pivots: its rows, the row of the diagonal, and from an entry to that
+ * of its row in the next column. Above the 2 width + 1 rows of the band there are width more for the fill of pivots. */
 #define FU_BAND_ROWS(width) (3 * (width) + 1)
 #define FU_BAND_DIAGONAL(width) (2 * (width))
+#define FU_BAND_STRIDE(width) (3 * (width))
 
 /* Parts of a chain with separate row ranges: the closure of a loop touches both ends, and not the rows between them. */
 enum { FU_HALVES = 2 };
@@ -72,7 +72,7 @@ typedef struct {
     fu_span rows;
 } fu_matrix_block;
 
-/* Factorisation of a chain: in L (band.c), in L and U (unsymmetric_band.c), in K (dgbtrf). */
+/* Factorisation of a chain: in L (band.c), in L and U (unsymmetric_band.c), in K (pivoted.c). */
 typedef enum { FU_SYMMETRIC, FU_UNPIVOTED, FU_PIVOTED } fu_factorisation;
 
 /* A banded matrix with a border: [K B; C D]. Only K is large. It consists of chains, which the border alone
@@ -132,6 +132,9 @@ void fu_fronts_add_product(const fu_fronts *fronts, const double *matrix, int co
 int fu_fronts_factor(const fu_fronts *fronts, const double *matrix, fu_factors *factors, const fu_lapack *lapack);
 void fu_fronts_solve(const fu_fronts *fronts, const fu_factors *factors, double *y);
 
+int fu_pivoted_factor(int n, int width, int stride, double *A, int *pivot);
+void fu_pivoted_solve(int n, int width, int stride, const double *A, const int *pivot, double *x);
+
 void fu_inverse_make(int n, int width, const double *L, double *inverse);
 void fu_inverse_times(int rows, const double *inverse, int first, int end, const double *b, double *x);
 
@@ -146,6 +149,7 @@ void fu_set_times(fu_threads *threads, int n, double factor, const double *y, do
 void fu_add_times(fu_threads *threads, int n, double factor, const double *y, double *x);
 void fu_set_difference(fu_threads *threads, int n, double factor, const double *y, const double *z, double *x);
 
+int fu_needs_lapack(const fu_system *system);
 void fu_system_clear(fu_system *system);
 long fu_factor_at(const fu_system *system, int chain);
 double *fu_factor_of(const fu_system *system, int chain);
@@ -157,9 +161,9 @@ void fu_find_significant(const fu_system *system, int strip, const double *x, fu
 int fu_list_blocks(const fu_system *system, int strip, const fu_span rows[FU_HALVES], fu_matrix_block *blocks);
 void fu_system_release_border(fu_system *system);
 int fu_system_factor(fu_system *system, const fu_lapack *lapack);
-int fu_system_factor_band(fu_system *system, const fu_lapack *lapack);
+int fu_system_factor_band(fu_system *system);
 void fu_system_invert_band(fu_system *system);
-void fu_system_keep_border(fu_system *system, const fu_lapack *lapack, int columns);
+void fu_system_keep_border(fu_system *system, int columns);
 int fu_system_factor_border(fu_system *system, const fu_lapack *lapack);
 void fu_system_solve(const fu_system *system, const fu_lapack *lapack, double *x);
 void fu_system_solve_border(const fu_system *system, const fu_lapack *lapack, double *x);
