@@ -5,11 +5,15 @@ from __future__ import annotations
 import importlib
 import os
 import sys
+from collections.abc import Callable
 from importlib.machinery import PathFinder
 from importlib.util import module_from_spec
 from types import ModuleType
 
 NAME = "scipy.linalg.cython_lapack"
+
+WHEN_LOADED: list[Callable[[], None]] = []
+"""Called when SciPy's BLAS is there."""
 
 
 def cython_lapack() -> ModuleType:
@@ -18,8 +22,13 @@ def cython_lapack() -> ModuleType:
     `import scipy.linalg` takes ten times as long and 50 MB, and a run needs nothing else of it. A later import finds
     this module.
     """
-    if NAME in sys.modules:
-        return sys.modules[NAME]
+    module = sys.modules.get(NAME) or _loaded()
+    for call in WHEN_LOADED:
+        call()
+    return module
+
+
+def _loaded() -> ModuleType:
     import scipy  # prepares the search for its libraries
 
     spec = PathFinder.find_spec(NAME, [os.path.join(folder, "linalg") for folder in scipy.__path__])

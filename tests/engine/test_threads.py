@@ -1,5 +1,6 @@
 """The number of threads is bounded by the machine; a fork refuses them; BLAS uses one during a run."""
 
+import os
 import subprocess
 import sys
 import threading
@@ -7,6 +8,7 @@ import threading
 import funicular as fu
 import linear_cost
 import pytest
+from funicular.base.lapack import cython_lapack
 from funicular.solve.linear import threads
 from shared_scenes import cable_scene
 from threadpoolctl import ThreadpoolController, threadpool_limits
@@ -104,8 +106,7 @@ def blas_threads() -> set[int]:
 @pytest.fixture
 def two_blas_threads():
     """Set the environment to two threads of BLAS."""
-    import funicular.engine  # noqa: F401  with SciPy's BLAS
-
+    cython_lapack()  # with SciPy's BLAS
     with threadpool_limits(limits=2, user_api="blas"):
         yield
 
@@ -115,6 +116,18 @@ def test_one_blas_thread_during_a_run(two_blas_threads):
     scene().run(1e-2, tol=1e-3, progress=lambda time: seen.update(blas_threads()))
     assert seen == {1}
     assert blas_threads() == {2}
+
+
+def test_scipy_is_held_at_one_thread_from_the_run_that_loads_it():
+    code = ("import sys, warnings, funicular as fu; from threadpoolctl import threadpool_info; seen = set()\n"
+            "warnings.simplefilter('ignore'); scene = fu.load_scene('aerial_tramway')\n"
+            "assert 'scipy' not in sys.modules\n"
+            "def look(time): seen.update(each['num_threads'] for each in threadpool_info())\n"
+            "scene.run(0.01, output_step=0.005, integrator='genalpha', progress=look)\n"
+            "print('scipy' in sys.modules, seen, {each['num_threads'] for each in threadpool_info()})")
+    found = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True,
+                           env=os.environ | {"OPENBLAS_NUM_THREADS": "2"}).stdout
+    assert found == "True {1} {2}\n"
 
 
 def test_blas_threads_come_back_after_an_error(two_blas_threads):

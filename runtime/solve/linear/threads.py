@@ -7,6 +7,8 @@ import threading
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from ...base.lapack import WHEN_LOADED
+
 if TYPE_CHECKING:
     from threadpoolctl import ThreadpoolController
 
@@ -43,6 +45,7 @@ class _OneBlasThread:
     def __init__(self) -> None:
         self._reset()
         os.register_at_fork(after_in_child=self._reset)  # what other threads were inside of is not in the child
+        WHEN_LOADED.append(self._hold_scipy)
 
     def _reset(self) -> None:
         self._lock, self._inside = threading.Lock(), 0
@@ -51,20 +54,35 @@ class _OneBlasThread:
     def __enter__(self) -> None:
         with self._lock:
             if self._inside == 0:
-                blas = _blas()
-                if any(library.num_threads != 1 for library in blas.lib_controllers):
-                    _let_this_thread_set_limits()
-                    self._limiter = blas.limit(limits=1)
+                self._limit()
             self._inside += 1
 
     def __exit__(self, *exception: object) -> None:
         with self._lock:
             self._inside -= 1
-            if self._inside == 0 and self._limiter is not None:
-                _let_this_thread_set_limits()
-                self._limiter.restore_original_limits()
-                _let_this_thread_set_limits()  # and who had set limits before
-                self._limiter = None
+            if self._inside == 0:
+                self._release()
+
+    def _hold_scipy(self) -> None:
+        """Hold SciPy's BLAS, too, which is loaded within a run."""
+        with self._lock:
+            _blas.cache_clear()
+            if self._inside:
+                self._release()
+                self._limit()
+
+    def _limit(self) -> None:
+        blas = _blas()
+        if any(library.num_threads != 1 for library in blas.lib_controllers):
+            _let_this_thread_set_limits()
+            self._limiter = blas.limit(limits=1)
+
+    def _release(self) -> None:
+        if self._limiter is not None:
+            _let_this_thread_set_limits()
+            self._limiter.restore_original_limits()
+            _let_this_thread_set_limits()  # and who had set limits before
+            self._limiter = None
 
 
 one_blas_thread = _OneBlasThread()
@@ -84,7 +102,5 @@ def _let_this_thread_set_limits() -> None:
 @cache
 def _blas() -> ThreadpoolController:
     from threadpoolctl import ThreadpoolController
-
-    from ... import engine  # noqa: F401  brings SciPy's BLAS along
 
     return ThreadpoolController().select(user_api="blas")
