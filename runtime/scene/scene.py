@@ -10,6 +10,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Never, Self, cast
 
 from ..base.interruptions import interruptible, uninterrupted, was_interrupted
+from ..base.stages import Stages, at_once
 from ..errors import (
     ConvergenceError,
     EndOfCableError,
@@ -117,6 +118,16 @@ class Scene(Viewable, DescribedScene):
     def _run(self, settings_given: Mapping[str, Any], resume: bool, progress: bool | Callable[[float], None] | None,
              trials: TrialCache | None = None) -> Run:
         """Return the run with these settings, None for defaults, see `run`; trials: of scenes of one shape."""
+        work = self._in_stages(settings_given, resume, progress, trials)
+        with uninterrupted(), one_blas_thread:
+            run = at_once(work)
+        if run.status == "interrupted":
+            warnings.warn(run.report["message"], FunicularWarning, stacklevel=3)
+        return run
+
+    def _in_stages(self, settings_given: Mapping[str, Any], resume: bool,
+                   progress: bool | Callable[[float], None] | None, trials: TrialCache | None = None) -> Stages[Run]:
+        """Return the work of a run, see `_run`, after its checks; Ctrl-C must not interrupt it between its parts."""
         given = {name: value for name, value in settings_given.items() if value is not None}
         initial = given.get("initial")
         state = None if initial is None or isinstance(initial, str) else _state(self, initial)
@@ -132,11 +143,7 @@ class Scene(Viewable, DescribedScene):
         scene, state = scene._adjusted(settings, state)
         scene._check_for(settings)
         _check_resume(resume, settings)
-        run = scene._simulated(settings, state, resume, progress, chosen, trials)
-        _raise_where_stopped(run)
-        if run.status == "interrupted":
-            warnings.warn(run.report["message"], FunicularWarning, stacklevel=3)
-        return run
+        return scene._simulated(settings, state, resume, progress, chosen, trials)
 
     def _adjusted(self, settings: RunSettings, state: Start | None) -> tuple[Self, Start | None]:
         """Return the scene and the state at the start of a run, adjusted where the scene's file adjusts parameters."""
@@ -174,7 +181,7 @@ class Scene(Viewable, DescribedScene):
         if not any(cable.is_open for cable in self.cables.values()):
             return None
         chosen = self._choose(settings, settings.quantities or (), "unset")
-        warnings.warn(chosen.messages()[0], FunicularWarning, stacklevel=4)  # it was not requested
+        warnings.warn(chosen.messages()[0], FunicularWarning, stacklevel=5)  # it was not requested
         return chosen
 
     def _choose(self, settings: RunSettings, quantities: Sequence[str], free: str,
@@ -185,8 +192,8 @@ class Scene(Viewable, DescribedScene):
 
         def simulate(scene: Self, settings: RunSettings, rest: Equilibrium | None) -> Run:
             scene._check_for(settings)
-            run = scene._simulated(settings, rest, False, False)
-            _raise_where_stopped(run)
+            with uninterrupted(), one_blas_thread:
+                run = at_once(scene._simulated(settings, rest, False, False))
             if run.status == "interrupted":
                 raise KeyboardInterrupt
             return run
@@ -195,9 +202,11 @@ class Scene(Viewable, DescribedScene):
 
     def _simulated(self, settings: RunSettings, state: Start | None, resume: bool,
                    progress: bool | Callable[[float], None] | None, chosen: Choice[Self] | None = None,
-                   trials: TrialCache | None = None) -> Run:
-        """Return the run with these settings, in any status, from a state or as the settings say."""
-        with uninterrupted(), self._saving(settings, resume) as stream, one_blas_thread, enough_memory():
+                   trials: TrialCache | None = None) -> Stages[Run]:
+        """Return the run with these settings, from a state or as the settings say, in stages. Raises EndOfCableError,
+        RopeLeftError and ConvergenceError.
+        """
+        with self._saving(settings, resume) as stream, enough_memory():
             from ..results.recording import recorded  # brings SciPy and the engine
             from ..solve.motion.run import simulate
 
@@ -207,7 +216,7 @@ class Scene(Viewable, DescribedScene):
                     state = _at_rest(settings.initial, self, None if chosen is None else chosen.rest)
             flat = in_plane(self)
             with progress_bar(settings.duration, progress) as on_progress:
-                simulation = simulate(flat, settings, on_progress, initial=state, stream=stream, trials=trials)
+                simulation = yield from simulate(flat, settings, on_progress, state, stream, trials)
             recording = recorded(simulation, flat, settings)
             if chosen is not None:
                 recording.report["choice"] = chosen.facts()
@@ -221,7 +230,8 @@ class Scene(Viewable, DescribedScene):
             if was_interrupted() and run.status != "interrupted":
                 warnings.warn("the interruption came after the end of the run: its results are complete",
                               FunicularWarning, stacklevel=5)
-            return run
+        _raise_where_stopped(run)
+        return run
 
     def _saving(self, settings: RunSettings, resume: bool) -> AbstractContextManager[Stream | None]:
         """Return the writer of the file of a run, if it has one."""

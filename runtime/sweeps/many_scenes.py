@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
+from itertools import islice
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
+from ..base.stages import Stages
 from ..errors import FunicularError, SceneError
 from ..integrators import AUTO
 from ..parts.settings import RunSettings
@@ -17,14 +20,18 @@ from ..scene.scene import Scene
 from ..solve.linear.threads import available, one_blas_thread
 from ..solve.motion.trial_cache import TrialCache
 from .abandonment import Abandonment
+from .in_step import MAX_GROUP, Ended, in_step
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
 
 Result: TypeAlias = Run | dict[str, np.ndarray] | FunicularError
 
-SCENES_PER_THREAD = 4
-"""Scenes of each thread that are taken in advance, so that a thread finds another one while the caller waits."""
+GROUPS_PER_THREAD = 3
+"""Groups of scenes of each thread that are taken in advance, so that a thread finds another one while the caller waits.
+"""
+GROUP_SECONDS = 0.1
+"""Time of the scenes that one thread runs in step."""
 
 SINGLE_RUN_SETTINGS = ("save", "resume", "progress")
 """Arguments of `Scene.run` that name a file or a display, which many scenes would share."""
@@ -35,9 +42,9 @@ def run_many(scenes: Iterable[Scene | Callable[[], Scene]], *, threads: int | No
     """Run scenes on several threads at once; yields the result of each in the order of the scenes.
 
     scenes: scenes, or functions without arguments that return one, which are called on the threads. About
-    ``4 * threads`` of them are taken in advance, so that memory does not grow with their number. threads: scenes that
-    run at once, by default one for each processor. keep: names of results such as ``["A.position"]``. settings: as for
-    `Scene.run`, without save, resume and progress.
+    ``3 * threads`` of them are taken in advance, of short runs up to 16 times as many, so that memory does not grow
+    with their number. threads: scenes that run at once, by default one for each processor. keep: names of results such
+    as ``["A.position"]``. settings: as for `Scene.run`, without save, resume and progress.
 
     Yields, for each scene, its `Run`, bit for bit that of ``scene.run(**settings)`` with the same integrator; with
     ``keep`` a dict of its arrays by these names, and ``"time"``. The first scene is run before the others: an
@@ -82,35 +89,55 @@ def _results(scenes: Iterator[Scene | Callable[[], Scene]], threads: int, keep: 
     """Yield the results in order; nothing starts before the first is asked for."""
     abandonment = Abandonment()
 
-    def result(of: Scene | Callable[[], Scene]) -> Result:
-        try:
-            scene = of() if callable(of) else of
-            if not isinstance(scene, Scene):
-                raise SceneError("run_many", f"{shown(scene)} is not a scene",
-                                 "give scenes, or functions that return one")
-            if scene.run_settings.get("save") is not None:
-                raise SceneError("run", '"save" in the scene\'s settings names a file of one run',
-                                 "leave it out where many scenes run")
-            run = scene._run(settings | {"threads": 1}, False, abandonment.watch, trials)
-            return run if keep is None else {"time": run.time} | {name: run[name] for name in keep}
-        except FunicularError as error:
-            return _bare(error)
+    def begun(of: Scene | Callable[[], Scene]) -> Stages[Run]:
+        scene = of() if callable(of) else of
+        if not isinstance(scene, Scene):
+            raise SceneError("run_many", f"{shown(scene)} is not a scene", "give scenes, or functions that return one")
+        if scene.run_settings.get("save") is not None:
+            raise SceneError("run", '"save" in the scene\'s settings names a file of one run',
+                             "leave it out where many scenes run")
+        return scene._in_stages(settings | {"threads": 1}, False, abandonment.watch, trials)
+
+    def results(group: list[Scene | Callable[[], Scene]]) -> list[Ended[Result]]:
+        return [_kept(*ended, keep) for ended in in_step(partial(begun, of) for of in group)]
 
     trials = TrialCache(is_open=settings.get("integrator") in (None, AUTO) and settings.get("step") is None)
     from concurrent.futures import ThreadPoolExecutor, wait  # which one scene does without
 
-    waiting: deque[Future[Result]] = deque()
+    waiting: deque[Future[list[Ended[Result]]]] = deque()
+    length = 1
     with one_blas_thread, ThreadPoolExecutor(threads, "funicular") as pool:
         try:
-            for scene in scenes:
-                waiting.append(pool.submit(result, scene))
+            while group := [*islice(scenes, length)]:
+                waiting.append(pool.submit(results, group))
                 if trials.is_open:  # the others use the trial of the first scene, for any number of threads
                     wait(waiting)
                     trials.is_open = False
-                if len(waiting) >= SCENES_PER_THREAD * threads:
-                    yield waiting.popleft().result()
+                if len(waiting) >= GROUPS_PER_THREAD * threads:
+                    ended = waiting.popleft().result()
+                    yield from _of(ended)
+                    length = max(1, min(MAX_GROUP, int(GROUP_SECONDS / max(max(each.seconds for each in ended), 1e-9))))
             while waiting:
-                yield waiting.popleft().result()
+                yield from _of(waiting.popleft().result())
         finally:
             abandonment.begin()
             pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _kept(result: Run | Exception, seconds: float, keep: list[str] | None) -> Ended[Result]:
+    """Return what is yielded of the end of a run: its arrays of these names, or all of it."""
+    found: Result | Exception = result
+    if isinstance(result, Run) and keep is not None:
+        try:
+            found = {"time": result.time} | {name: result[name] for name in keep}
+        except FunicularError as error:
+            found = error
+    return Ended(_bare(found) if isinstance(found, FunicularError) else found, seconds)
+
+
+def _of(ended: list[Ended[Result]]) -> Iterator[Result]:
+    """Yield the results of runs. Raises the errors that are none of a scene."""
+    for result, _ in ended:
+        if isinstance(result, Exception) and not isinstance(result, FunicularError):
+            raise result
+        yield result

@@ -6,7 +6,7 @@ import hashlib
 import inspect
 import time
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field
 from functools import partial
@@ -15,6 +15,7 @@ from typing import Any, ClassVar, NamedTuple, Protocol
 import numpy as np
 
 from ..base.interruptions import interruptible, uninterrupted
+from ..base.stages import Stages
 from ..errors import FunicularError, FunicularWarning, SceneError, near
 from ..parts.paths import Path, changed, check_each_once, path_of
 from ..parts.settings import RunSettings, overridden
@@ -24,6 +25,7 @@ from ..scene.scene import Scene
 from ..solve.linear.threads import one_blas_thread
 from .abandonment import Watch
 from .identity import identity_of, identity_of_scene
+from .in_step import Ended, in_step
 from .parameters import SWEEP, Points
 from .silence import silence
 from .stored_points import Keep, StoredPoint, of_dict
@@ -225,14 +227,36 @@ def _outcomes(make: Callable[[Mapping[str, Any]], Any], points: Sequence[Mapping
     """
     made = [_attempt(make, point, keep) for point in points]
     with uninterrupted(), one_blas_thread, interruptible():  # for all runs at once: each would set and reset it
-        run = partial(_run, watch=watch)
-        ran = [_attempt(run, each, keep) if isinstance(each, Scene) else each for each in made]
+        ends = in_step(partial(_begun, each, watch) for each in made if isinstance(each, Scene))
+        ran = [_of_run(ends, keep) if isinstance(each, Scene) else each for each in made]
     return [each for each in ran if isinstance(each, Outcome)]
 
 
-def _run(scene: Scene, watch: Watch | None) -> Run:
+def _begun(scene: Scene, watch: Watch | None) -> Stages[Run]:
+    """Return the work of a run, after its checks; it raises KeyboardInterrupt where it is interrupted."""
+    work = scene._in_stages({}, False, watch or False)
+
+    def whole() -> Stages[Run]:
+        run = yield from work
+        if run.status == "interrupted":
+            raise KeyboardInterrupt
+        return run
+
+    return whole()
+
+
+def _of_run(ends: Iterator[Ended[Run]], keep: Keep) -> Outcome | Scene:
+    """Return the outcome of the next one of runs."""
     with silence:  # warnings stand in the report
-        return scene.run(progress=watch or False)
+        result, seconds = next(ends)
+
+    def ended(result: Run | Exception) -> Run:
+        if isinstance(result, Exception):
+            raise result
+        return result
+
+    found = _attempt(ended, result, keep)
+    return found._replace(seconds=found.seconds + seconds) if isinstance(found, Outcome) else found
 
 
 def _attempt(act: Callable[[Any], Any], given: Any, keep: Keep) -> Outcome | Scene:
@@ -243,7 +267,7 @@ def _attempt(act: Callable[[Any], Any], given: Any, keep: Keep) -> Outcome | Sce
         if isinstance(made, Scene):
             return made
         if isinstance(made, Run):
-            if made.status == "interrupted":
+            if made.status == "interrupted":  # one that a function returned
                 raise KeyboardInterrupt
             if not keep.wanted:
                 raise SceneError(SWEEP, "names no results to keep", 'give keep=["A.position", ...]')

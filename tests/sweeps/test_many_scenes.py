@@ -103,6 +103,26 @@ def test_failures_are_alone():
     assert results[3].__traceback__ is None
 
 
+def test_short_scenes_in_groups(monkeypatch):
+    """Groups grow once the time of a scene is known; failures stay separate there, too."""
+    def recorded(works):
+        groups.append(len(begun := [*works]))
+        return in_step(begun)
+
+    groups, in_step = [], many_scenes.in_step
+    monkeypatch.setattr(many_scenes, "in_step", recorded)
+    monkeypatch.setattr(many_scenes, "GROUP_SECONDS", 10.0)
+    makers = [partial(one_rider, elements=2, speed=1.0 + 0.1 * k) for k in range(20)]
+    makers[9], makers[13] = misplaced, falling_off
+    results = [*fu.run_many(makers, threads=1, **SETTINGS)]
+    assert max(groups) > 9
+    for k, (make, result) in enumerate(zip(makers, results, strict=True)):
+        if k in (9, 13):
+            assert type(result) is {9: fu.SceneError, 13: fu.EndOfCableError}[k] and result.__traceback__ is None
+        else:
+            assert_same_bits(result, make().run(**SETTINGS))
+
+
 def test_kept_arrays_alone():
     run = one_rider(elements=2).run(**SETTINGS)
     (kept,) = fu.run_many([one_rider(elements=2)], keep=["A.position", "trolley.s"], **SETTINGS)
@@ -127,10 +147,11 @@ def test_memory_does_not_grow_with_their_number():
 
     results = fu.run_many(endless(), threads=2, keep=["wire.position"], duration=0.01, output_step=0.005)
     assert taken == 0
-    for k, kept in zip(range(40), results, strict=False):
+    in_advance = 2 * many_scenes.GROUPS_PER_THREAD * many_scenes.MAX_GROUP
+    for k, kept in zip(range(3 * in_advance), results, strict=False):
         assert kept["wire.position"].shape == (3, 2, 3)
-        assert taken <= k + 1 + 2 * many_scenes.SCENES_PER_THREAD
-        assert len(alive) <= 2 * many_scenes.SCENES_PER_THREAD + 4
+        assert taken <= k + 1 + in_advance
+        assert len(alive) <= in_advance + 4
     results.close()
     assert not [t for t in threading.enumerate() if t.name.startswith("funicular")]
 
@@ -153,12 +174,14 @@ def test_other_errors_end_the_iteration():
     def broken():
         raise ZeroDivisionError
 
-    results = fu.run_many([partial(one_rider, elements=2), broken, partial(one_rider, elements=2)], threads=2,
-                          **SETTINGS)
-    assert isinstance(next(results), fu.Run)
-    with pytest.raises(ZeroDivisionError):
-        next(results)
-    assert list(results) == []
+    for before in (1, 8):  # the latter in a group of several
+        good = [partial(one_rider, elements=2)] * before
+        results = fu.run_many([*good, broken, *good], threads=2, **SETTINGS)
+        for _ in good:
+            assert isinstance(next(results), fu.Run)
+        with pytest.raises(ZeroDivisionError):
+            next(results)
+        assert list(results) == []
 
 
 @pytest.mark.parametrize(("given", "message"), [
@@ -188,7 +211,7 @@ def test_a_file_of_one_run():
 
 def test_cpu_time_is_that_of_one_scene(monkeypatch):
     """The clock of the process would include the other threads."""
-    monkeypatch.setattr("funicular.solve.motion.run.time.process_time", lambda: pytest.fail("the clock of the process"))
+    monkeypatch.setattr("funicular.base.stages.time.process_time", lambda: pytest.fail("the clock of the process"))
     (run,) = fu.run_many([partial(one_rider, elements=2)], **SETTINGS)
     assert 0.0 < run.report["time_s"]["solve_cpu"] < run.report["time_s"]["total"]
 

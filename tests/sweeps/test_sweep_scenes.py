@@ -58,7 +58,7 @@ def test_each_point_is_the_run_of_its_scene(name):
                         else part.as_made().entries()[rest])
     points = {path: [value if path == other else before[path] for other in changed]
               for path, (value, _) in changed.items()}
-    found = fu.sweep(scene, points, method="list", keep=KEPT, workers=2, batch=1, progress=False, **SETTINGS)
+    found = fu.sweep(scene, points, method="list", keep=KEPT, workers=2, batch=4, progress=False, **SETTINGS)
     assert len(changed) > 1 and set(found.status.values) == {"completed"}
     for k, (path, (_, made)) in enumerate(changed.items()):
         run = made.run(**SETTINGS, progress=False)

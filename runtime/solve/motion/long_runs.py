@@ -70,7 +70,7 @@ class LongRun:
         if not self._warned:
             self._warned = True
             warnings.warn(f"the run needs about {steps + more:.2g} steps, {_duration(more / rate)} at the "
-                          f"present rate of {rate:.2g} a second: {self._why()}", FunicularWarning, stacklevel=6)
+                          f"present rate of {rate:.2g} a second: {self._why()}", FunicularWarning, stacklevel=7)
 
     def notes(self) -> list[str]:
         """Return for the report the number of steps of a long run, and the cause; empty for other runs."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-import time
+import math
 import warnings
 from collections.abc import Callable, Container
 from functools import partial
@@ -13,6 +13,7 @@ import numpy as np
 
 from ...base.deferred import dataclass
 from ...base.interruptions import interruptible
+from ...base.stages import StageClock, Stages, at_once
 from ...checks.plausibility import implausible
 from ...checks.velocity_jumps import velocity_jumps
 from ...engine import Engine
@@ -86,13 +87,14 @@ class Simulation:
 
 
 def simulate(scene: SceneData, settings: RunSettings, on_progress: ProgressDisplay, initial: Start | None = None,
-             stream: RowStream | None = None, trials: TrialCache | None = None) -> Simulation:
-    """Integrate a checked scene; calls on_progress(time reached in s) about twenty times a second.
+             stream: RowStream | None = None, trials: TrialCache | None = None) -> Stages[Simulation]:
+    """Integrate a checked scene, in stages; calls on_progress(time reached in s) about twenty times a second.
 
     initial: a state of this scene to start from; stream: takes the rows as they come, so that the engine keeps only the
     last ones; trials: of other scenes of this shape.
     """
-    begin = time.perf_counter()
+    clock = StageClock(of_thread=settings.threads == 1)
+    begin = clock.wall
     with interruptible():
         ready = _prepared(scene, settings, initial)
     _check_size(ready.engine.row_bytes, settings, stream)
@@ -104,16 +106,18 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: ProgressDispl
     with interruptible():
         choice = choose(settings, scene, ready.model, ready.engine, stream.integrator if stream else None)
     method, reason, rival = choice if trials is None else trials.of(scene, *choice)
-    set_up, clock = time.perf_counter() - begin, time.thread_time if settings.threads == 1 else time.process_time
-    cpu = clock()
+    set_up, cpu = clock.wall - begin, clock.cpu
     LOG.info("run of %g s: %d degrees of freedom, %s (%s), set up in %.3g s", settings.duration, ready.model.n_dof,
              method.name, reason, set_up)
-    run = _begun(scene, settings, ready, method, blocks, on_progress, stream, on_trial=rival is not None)
+    size = 0 if stream else ready.engine.row_bytes * math.ceil(settings.duration / settings.output_step)
+    yield from clock.pause(size)
+    run = _begun(scene, settings, ready, method, blocks, on_progress, stream, clock, on_trial=rival is not None)
 
     def begun_with(other: Integrator, on_trial: bool) -> _Begun:
         anew = _prepared(scene, settings, initial)
-        return _begun(scene, settings, anew, other, blocks, on_progress, stream, on_trial)
+        return _begun(scene, settings, anew, other, blocks, on_progress, stream, clock, on_trial)
 
+    yield from clock.pause(size)
     run, status, method, why = _tried(scene, run, method, rival, begun_with, settings, blocks, stream, trials)
     given = initial if isinstance(initial, InitialState) else ()  # a state of rest starts at the scene's velocities
     messages += run.gaps + _warned([*_broken_velocities(run.model, run.change, given),
@@ -124,13 +128,16 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: ProgressDispl
     if status == "interrupted" and stream is not None and not stream.has_begun:  # write a checkpoint to resume from
         run = begun_with(method, on_trial=False)
     messages += run.observer.notes() + _warned(run.event_handler.notes())
-    cpu, ended = clock() - cpu, time.perf_counter()
+    cpu = clock.cpu - cpu
+    if status != "interrupted":
+        yield from clock.pause(size)
+    ended = clock.wall
     run.row_notes.see(run.engine)
     messages += _controlled_alone(run.engine, settings)
     if status not in FAILED_STATUSES:
         messages += _warned(_result_notes(scene, settings, run, partial(_rows_again, scene, initial, method)))
-    noted = time.perf_counter() - ended
-    total = time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
+    noted = clock.wall - ended
+    total = clock.wall - begin + (stream.elapsed if stream else 0.0)
     LOG.info("run %s after %.3g s", status.replace("_", " "), total)
     for message in messages:
         LOG.info("run: %s", message)
@@ -180,13 +187,13 @@ def _rows_again(scene: SceneData, initial: Start | None, method: Integrator,
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", FunicularWarning)
         second = settings.model_copy(update={"integrator": method.name})
-        return simulate(scene, second, ProgressDisplay(), initial).engine.rows()
+        return at_once(simulate(scene, second, ProgressDisplay(), initial)).engine.rows()
 
 
 def _warned(messages: list[str]) -> list[str]:
     """Return messages after a warning for each."""
     for message in messages:
-        warnings.warn(message, FunicularWarning, stacklevel=6)
+        warnings.warn(message, FunicularWarning, stacklevel=7)
     return messages
 
 
@@ -227,7 +234,7 @@ class _Begun(NamedTuple):
 
 
 def _begun(scene: SceneData, settings: RunSettings, ready: _Prepared, method: Integrator, blocks: RowBlocks,
-           progress: ProgressDisplay, stream: RowStream | None, on_trial: bool = False) -> _Begun:
+           progress: ProgressDisplay, stream: RowStream | None, clock: StageClock, on_trial: bool = False) -> _Begun:
     """Start a prepared run, with its stream; on_trial: it may begin anew with another method."""
     model, engine, event_handler, _ = ready
     status, gaps, change = _start(scene, settings, model, engine, method, None if stream is None else blocks.capacity)
@@ -235,7 +242,7 @@ def _begun(scene: SceneData, settings: RunSettings, ready: _Prepared, method: In
     if stream is not None and status is None:
         stream.start(model, engine, blocks, event_handler.happened, row_notes, on_trial)
     observer = LongRun(model, engine, settings, event_handler, progress)
-    return _Begun(model, engine, event_handler, status, gaps, change, observer, row_notes, time.perf_counter())
+    return _Begun(model, engine, event_handler, status, gaps, change, observer, row_notes, clock.wall)
 
 
 def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine, method: Integrator,
