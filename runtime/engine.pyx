@@ -15,7 +15,7 @@ from cpython.exc cimport PyErr_CheckSignals
 from cpython.mem cimport PyMem_Calloc, PyMem_Free
 from cpython.pycapsule cimport PyCapsule_GetName, PyCapsule_GetPointer
 from libc.float cimport DBL_MIN
-from libc.math cimport M_PI_2, fabs, fmax, sqrt
+from libc.math cimport INFINITY, M_PI_2, acos, asin, fabs, fmax, fmin, sin, sqrt
 from libc.stdlib cimport calloc, free, realloc
 from libc.string cimport memcpy
 

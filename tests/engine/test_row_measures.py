@@ -10,6 +10,7 @@ from funicular.engine import (
     slope_lengths,
     straight_rows,
     tension_work,
+    turned_tension,
 )
 from funicular.model.middle_strain import gauss_rule
 
@@ -89,3 +90,21 @@ def test_the_turn_and_the_strain_around_an_element():
         a, b = vectors[row, first, 1], vectors[row, last, 1]
         assert found[0, row] == pytest.approx(a @ b / np.linalg.norm(a) / np.linalg.norm(b), rel=1e-12)
         assert found[1, row] == pytest.approx(strain[row, first:last].mean(), rel=1e-12)
+
+
+@pytest.mark.parametrize("lengths, bends", [(1, 1.0), (ROWS, 1.0), (1, 0.0)])
+def test_the_tension_of_a_line_that_turns(lengths, bends):
+    cosine, strain = RANDOM.uniform(-1.1, 1.1, ROWS), 0.1 * RANDOM.normal(size=ROWS)
+    force, h, EA = RANDOM.uniform(0, 2, ROWS), RANDOM.uniform(0.1, 1, lengths), 3.0
+    half = np.maximum(np.arccos(np.clip(cosine, -1, 1)) / 2, 1e-9)
+    tension = np.maximum(EA * strain, force / (2 * np.sin(half)))
+    angle = 2 * np.arcsin(np.minimum(force / (2 * tension), 1))
+    EI = bends * float(np.median(h**2 * tension))  # some elements are longer than the bend, and some shorter
+    with np.errstate(divide="ignore"):
+        longer = h * np.sqrt(tension / EI)
+    error = np.where(longer > 1, np.minimum(0.1 * longer, 0.3) * angle**2, 0)
+    assert EI == 0.0 or 0 < np.count_nonzero(longer > 1) < ROWS
+    found = turned_tension(cosine, strain, force, h, EA, EI, 0.1, 0.3, 1e-9)
+    np.testing.assert_allclose(found, [error.sum(), angle.sum(), tension.sum()], rtol=1e-12)
+    with pytest.raises(ValueError, match="differ in number"):
+        turned_tension(cosine, strain, force[1:], h, EA, EI, 0.1, 0.3, 1e-9)

@@ -182,3 +182,25 @@ def around_elements(const double[:, :, :, :] nodal, int slope, const double[:, :
         around[0, t] = product / fmax(sqrt(square) * sqrt(other), DBL_MIN)
         around[1, t] = total / (last - first)
     return found
+
+
+def turned_tension(const double[:] cosine, const double[:] strain, const double[:] force, const double[:] h, double EA,
+                   double EI, double length_factor, double angle_factor, double least_angle):
+    """Return the sums over rows (T,) of the error of the tension of a line beside a slide, of the angle in rad by which
+    the line turns there, and of the tension in N, see solve/notes/coarse_slides.py.
+
+    cosine: of the angle between the slopes beside the slide; force: on its rider, in N; h (1 or T,): lengths of elements.
+    """
+    cdef Py_ssize_t rows = cosine.shape[0], t
+    cdef double tension, angle, longer, error_sum = 0.0, angle_sum = 0.0, tension_sum = 0.0
+    if not (strain.shape[0] == force.shape[0] == rows and h.shape[0] in (1, rows)):
+        raise ValueError("rows differ in number")
+    for t in range(rows):
+        angle = fmax(acos(fmin(fmax(cosine[t], -1.0), 1.0)) / 2, least_angle)
+        tension = fmax(fmax(EA * strain[t], force[t] / (2 * sin(angle))), 1e-300)
+        angle = 2 * asin(fmin(force[t] / (2 * tension), 1.0))
+        longer = h[t if h.shape[0] > 1 else 0] * sqrt(tension / EI) if EI > 0.0 else INFINITY
+        if longer > 1:
+            error_sum = error_sum + fmin(length_factor * longer, angle_factor) * angle * angle
+        angle_sum, tension_sum = angle_sum + angle, tension_sum + tension
+    return error_sum, angle_sum, tension_sum

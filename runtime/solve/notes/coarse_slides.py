@@ -9,12 +9,13 @@ h/sqrt(EI/N) of 0.5 to 8. While the rope slides, each node that passes the point
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from operator import add
+from typing import NamedTuple
 
 import numpy as np
 
 from ...base.rotations import sizes
-from ...engine import around_elements, outputs_by_name
+from ...engine import around_elements, outputs_by_name, turned_tension
 from ...model.middle_strain import middle_strain
 from ...model.model import SlideModel
 from ...model.span_coordinates import PER_NODE, SpanCoordinates
@@ -23,9 +24,6 @@ from ...parts.rope import Rope
 from .coarse_meshes import FORCE_ERROR_LIMIT, ROW_INTERVAL
 from .note import LineStiffness, Note, Rows
 
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
-
 LENGTH_FACTOR, ANGLE_FACTOR = 0.02, 0.08
 """Difference of the tensions over the squared angle times h/sqrt(EI/N), and its upper bound over the squared angle."""
 ROUNDING = float(np.finfo(float).eps)
@@ -33,13 +31,13 @@ ROUNDING = float(np.finfo(float).eps)
 
 
 class _Beside(NamedTuple):
-    """The cosine of the angle between the slopes of a line before and after a slide, its strain, and the length of the
-    element that has the slide in m, (T,).
+    """The cosine of the angle between the slopes of a line before and after a slide, its strain, (T,), and the length
+    of the element that has the slide in m, (1 or T,).
     """
 
     cosine: np.ndarray
     strain: np.ndarray
-    h: ArrayLike
+    h: np.ndarray
 
 
 def _on_rope(span: SpanCoordinates, q: np.ndarray, s: np.ndarray) -> _Beside:
@@ -66,31 +64,21 @@ class CoarseSlides(Note):
         if not self.model.slides:
             return
         forces = sizes(outputs_by_name("slide", rows["slide"])["force"])
-        for k, (slide, force) in enumerate(zip(self.model.slides, forces.T, strict=True)):
-            numbers, h = self._of(slide, rows["q"], rows["s"][:, k], force)
+        for slide, s, force in zip(self.model.slides, rows["s"].T, forces.T, strict=True):
+            of, at = self._stiffness(slide), self._beside(slide, rows["q"], s)
+            added = turned_tension(at.cosine, at.strain, force, at.h, of.EA, of.EI_strong, LENGTH_FACTOR, ANGLE_FACTOR,
+                                   ROUNDING)
             count, sums, longest = self.found.get(slide.name, (0, [0.0, 0.0, 0.0], 0.0))
-            self.found[slide.name] = [count + len(force), (sums + np.add.reduce(numbers, axis=1)).tolist(),
-                                      max(longest, float(np.max(h)))]
+            self.found[slide.name] = [count + len(force), [*map(add, sums, added)], max(longest, float(at.h.max()))]
 
-    def _of(self, slide: SlideModel, q: np.ndarray, s: np.ndarray,
-            force: np.ndarray) -> tuple[np.ndarray, ArrayLike]:
-        """Return error, angle and tension (3, T), see `found`, and lengths of elements (T,), at coordinates q (T, n),
-        arc-lengths s (T,) and forces on the rider (T,) in N.
-        """
-        at = self._on_cable(slide, q, s) if slide.coordinates is None else _on_rope(slide.coordinates, q, s)
-        half = np.maximum(np.arccos(np.minimum(np.maximum(at.cosine, -1), 1)) / 2, ROUNDING)
-        of = self._stiffness(slide)
-        tension = np.maximum(np.maximum(of.EA * at.strain, force / (2 * np.sin(half))), 1e-300)
-        angle = 2 * np.arcsin(np.minimum(force / (2 * tension), 1.0))
-        longer = at.h * np.sqrt(tension / of.EI_strong)
-        error = np.where(longer > 1, np.minimum(LENGTH_FACTOR * longer, ANGLE_FACTOR) * angle**2, 0.0)
-        return np.array([error, angle, tension]), at.h
-
-    def _on_cable(self, slide: SlideModel, q: np.ndarray, s: np.ndarray) -> _Beside:
+    def _beside(self, slide: SlideModel, q: np.ndarray, s: np.ndarray) -> _Beside:
+        """Return the line beside a slide, at coordinates q (T, n) and arc-lengths s (T,)."""
+        if slide.coordinates is not None:
+            return _on_rope(slide.coordinates, q, s)
         cable = self.model.cables[slide.cable]
         nodal, element = cable.nodal(q), cable.mesh.element_at(s)
         cosine, strain = around_elements(nodal, cable.vectors.index("r_x"), middle_strain(cable, nodal), element)
-        return _Beside(cosine, strain, cable.mesh.each_length(element))
+        return _Beside(cosine, strain, cable.mesh.lengths if cable.mesh.is_even else cable.mesh.lengths[element])
 
     def _line(self, slide: SlideModel) -> Cable | Rope:
         """Return the cable or rope of a slide."""
