@@ -2,6 +2,7 @@
 
 import numpy as np
 from funicular import Material, Rectangle, Scene
+from funicular.parts.paths import Variants, path_of
 
 TABLE_1 = Material(youngs_modulus=0.4e9, poisson_ratio=0.0, density=4200)
 SQUARE = Rectangle(height=0.05, width=0.05)
@@ -19,6 +20,12 @@ section = { shape = "rectangle", height = 0.05, width = 0.05 }
 material = { youngs_modulus = 0.4e9, shear_modulus = 0.2e9, density = 4200 }
 """
 """The cable of Table 1 in a scene file, with a shear modulus in the place of Poisson's ratio."""
+
+
+def changed(scene: Scene, values: dict) -> Scene:
+    """Return a scene with other values, by path."""
+    paths = {path_of(scene, path): value for path, value in values.items()}
+    return Variants(scene, paths).at(paths)
 
 
 def add_cable(scene: Scene, name="wire", pins=(0, 1.5), **given):

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from functools import cache
-from typing import Any, TypeVar
+from typing import Any, Generic, TypeVar
 
 from ..base.deferred import dataclass
 from ..errors import SceneError, near
@@ -102,20 +102,35 @@ def check_each_once(paths: Iterable[Path]) -> None:
 S = TypeVar("S", bound=SceneData)
 
 
-def changed(scene: S, values: Mapping[Path, Any]) -> S:
-    """Return a scene with other values, changed at once. Raises SceneError."""
-    parts = [*scene.parts()]
-    settings: dict[str, dict[str, Any]] = {name: {} for name in SETTINGS}
-    for path, value in values.items():
-        if path.part is None and path.head != GRAVITY:
-            settings[path.head][path.entries[0]] = value
-            _check_end(path, 1)
-    made = scene.changed([(parts[k], entries) for k, entries in changes_of(scene, values).items()],
-                         gravity_of(scene, values))
-    for name, table in settings.items():
-        if table:
-            setattr(made, f"{name}_settings", getattr(scene, f"{name}_settings") | table)
-    return made
+class Variants(Generic[S]):
+    """Scenes with other values at the same paths, each changed at once.
+
+    Parts before the first one that changes, in the order of the scene, are added and checked once: the others, which
+    come later, have no effect on them.
+    """
+
+    def __init__(self, scene: S, paths: Iterable[Path]):
+        """paths: of `path_of`. Raises SceneError."""
+        self._scene, self._parts = scene, [*scene.parts()]
+        changing = [0 if path.head == GRAVITY else path.part for path in paths]
+        self._first = min((number for number in changing if number is not None), default=len(self._parts))
+        self._begun = scene.with_parts(self._parts[:self._first]) if self._first else None
+
+    def at(self, values: Mapping[Path, Any]) -> S:
+        """Return the scene with other values. Raises SceneError."""
+        scene, first = self._scene, self._first
+        settings: dict[str, dict[str, Any]] = {name: {} for name in SETTINGS}
+        for path, value in values.items():
+            if path.part is None and path.head != GRAVITY:
+                settings[path.head][path.entries[0]] = value
+                _check_end(path, 1)
+        changes, gravity = changes_of(scene, values), gravity_of(scene, values)
+        parts = (part.remade(changes[k]) if k in changes else part for k, part in enumerate(self._parts[first:], first))
+        made = scene.with_parts(parts, gravity, self._begun)
+        for name, table in settings.items():
+            if table:
+                setattr(made, f"{name}_settings", getattr(scene, f"{name}_settings") | table)
+        return made
 
 
 def gravity_of(scene: SceneData, values: Mapping[Path, Any]) -> list[Any]:

@@ -264,15 +264,19 @@ class SceneData:
         """Add the parts of many pairs, see `pairs` and `funicular.Scene`."""
         raise NotImplementedError
 
-    def with_parts(self, parts: Iterable[Part], gravity: Any = None) -> Self:
+    def with_parts(self, parts: Iterable[Part], gravity: Any = None, begun: Self | None = None) -> Self:
         """Return a checked scene of other parts, with the settings and the title of this one.
 
-        parts: in the order of `parts`; gravity: in m/s², by default unchanged. Raises SceneError.
+        parts: in the order of `parts`; gravity: in m/s², by default unchanged; begun: a scene that such a call made of
+        the parts before these, which stays. Raises SceneError.
         """
-        scene = type(self)(gravity=self.gravity if gravity is None else gravity)
-        scene.title = self.title
-        scene.run_settings, scene.equilibrium_settings = dict(self.run_settings), dict(self.equilibrium_settings)
-        scene.relax_settings = dict(self.relax_settings)
+        if begun is not None:
+            scene = begun.copied()
+        else:
+            scene = type(self)(gravity=self.gravity if gravity is None else gravity)
+            scene.title = self.title
+            scene.run_settings, scene.equilibrium_settings = dict(self.run_settings), dict(self.equilibrium_settings)
+            scene.relax_settings = dict(self.relax_settings)
         for part in parts:
             scene.add(part.as_made())
         return scene

@@ -8,8 +8,8 @@ import time
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass, field
-from functools import partial
+from dataclasses import dataclass, field, fields
+from functools import cached_property, partial
 from typing import Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
@@ -17,7 +17,7 @@ import numpy as np
 from ..base.interruptions import interruptible, uninterrupted
 from ..base.stages import Stages
 from ..errors import FunicularError, FunicularWarning, SceneError, near
-from ..parts.paths import Path, changed, check_each_once, path_of
+from ..parts.paths import Path, Variants, check_each_once, path_of
 from ..parts.settings import RunSettings, overridden
 from ..parts.validation import shown
 from ..results.run import Run
@@ -83,7 +83,7 @@ class SceneSubject:
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the state for pickling: other processes make their own scenes."""
-        return vars(self) | {"checked": {}}
+        return {each.name: getattr(self, each.name) for each in fields(self)} | {"checked": {}}
 
     @classmethod
     def of(cls, scene: Scene, parameters: Sequence[str], keep: Keep) -> SceneSubject:
@@ -101,7 +101,11 @@ class SceneSubject:
     def scene_at(self, point: Mapping[str, Any]) -> Scene:
         """Return the scene with the values of a point. Raises SceneError."""
         with silence:  # warnings stand in the scene's messages
-            return changed(self.scene, {self.paths[name]: value for name, value in point.items()})
+            return self._variants.at({self.paths[name]: value for name, value in point.items()})
+
+    @cached_property
+    def _variants(self) -> Variants[Scene]:
+        return Variants(self.scene, self.paths.values())
 
     def check(self, points: Points) -> None:
         """Refuse a sweep with a scene that cannot be simulated. Raises SceneError that names the point.

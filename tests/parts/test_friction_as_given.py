@@ -3,10 +3,11 @@
 import funicular as fu
 import numpy as np
 import pytest
-from funicular.parts.paths import changed, path_of, value_at
+from funicular.parts.paths import path_of, value_at
 from funicular.scene.file import loads
 from funicular.scene.schema import scene_schema
 from jsonschema import Draft7Validator
+from shared_scenes import changed
 
 RUBBING = ("trolley", "foot", "touch")
 """A slide, a contact and a crossing of `scene`."""
@@ -59,7 +60,7 @@ def test_a_path_leads_to_the_coefficient_whatever_was_given():
         made = scene(friction)
         for name in RUBBING:
             for path, value in ((f"{name}.friction", 0.3), (f"{name}.friction.coefficient", 0.3)):
-                found = changed(made, {path_of(made, path): value})
+                found = changed(made, {path: value})
                 assert value_at(found, path_of(found, f"{name}.friction.coefficient")) == 0.3
 
 

@@ -12,10 +12,10 @@ import jsonschema
 import numpy as np
 import pytest
 from expectations import refused
-from funicular.parts.paths import changed, path_of
 from funicular.parts.rope import ELEMENTS
 from funicular.parts.rope_route import MAX_LAYER, MIN_SPAN_RATIO, MIN_WRAP
 from funicular.scene.schema import scene_schema
+from shared_scenes import changed
 
 pytestmark = pytest.mark.filterwarnings("error::funicular.FunicularWarning")
 
@@ -691,7 +691,7 @@ def test_schema():
 
 def test_paths_into_it():
     scene = from_python()
-    made = changed(scene, {path_of(scene, "hoist.route.1.radius"): 0.4, path_of(scene, "hoist.length"): 5.0})
+    made = changed(scene, {"hoist.route.1.radius": 0.4, "hoist.length": 5.0})
     assert made.ropes["hoist"].route[1].radius == 0.4 and made.ropes["hoist"].length == 5.0
 
 

@@ -6,8 +6,8 @@ import catenary
 import funicular as fu
 import numpy as np
 import pytest
-from funicular.parts.paths import changed, path_of
 from funicular.solve.statics import static_problem
+from shared_scenes import changed
 
 STEEL = fu.Material(youngs_modulus=1e11, poisson_ratio=0.3, density=9000)
 THIN = fu.Circle(radius=0.005)
@@ -116,7 +116,7 @@ def test_the_jacobian_is_that_of_differences_of_equilibria():
         ends = []
         for sign in (-1, 1):
             value = rest.adjusted[name] * (1 + sign * 1e-4)
-            other = changed(rest.scene, {path_of(rest.scene, name): value}).equilibrium(tolerance=1e-12)
+            other = changed(rest.scene, {name: value}).equilibrium(tolerance=1e-12)
             ratio = rest.adjusted["wire.rest_length"] / 50.3
             ends.append([other["wire.position"][20, 1],
                          other.section_forces("wire", s=[10.06 * ratio])["tension"].item()])
@@ -228,7 +228,7 @@ def test_clamps_that_turn_and_move_with_the_drawing_have_the_right_derivatives(e
     for k, name in enumerate(rest.adjusted):
         ends = []
         for change in (-1e-5, 1e-5):
-            other = changed(rest.scene, {path_of(rest.scene, name): rest.adjusted[name] + change})
+            other = changed(rest.scene, {name: rest.adjusted[name] + change})
             state = other.equilibrium(tolerance=1e-13, start=rest)
             assert state["rod.position"][-1] == pytest.approx(other.cables["rod"].end, abs=1e-12)
             ends.append([state["rod.position"][4, 1], state["rod@2.25.force"][0]])
@@ -270,7 +270,7 @@ def test_derivatives_by_what_a_spring_is_are_those_of_other_equilibria(given, pa
     value = rest.adjusted[f"other.{path}"]
     ends = []
     for change in (-1e-5, 1e-5):
-        other = changed(rest.scene, {path_of(rest.scene, f"other.{path}"): value + change * max(1, abs(value))})
+        other = changed(rest.scene, {f"other.{path}": value + change * max(1, abs(value))})
         state = other.equilibrium(tolerance=1e-13)
         ends.append([state["A.position"][1], float(state["other.tension"])])
     rate = (np.array(ends[1]) - ends[0]) / (2e-5 * max(1, abs(value)))

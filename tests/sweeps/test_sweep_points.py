@@ -1,12 +1,15 @@
 """Points of sweeps: grids, lists, samples; paths into scenes, their checks, and messages."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 import scipy.stats
-from funicular import Friction, LogUniform, SceneError, Uniform, load_scene
+from funicular import Friction, LogUniform, Scene, SceneError, Uniform, load_scene
 from funicular.cli.sweep import parameter_of
-from funicular.parts.paths import changed, path_of, unit_of
+from funicular.parts.paths import Variants, label_of, path_of, unit_of
 from funicular.sweeps.parameters import points_of
+from shared_scenes import changed
 from sweep_subjects import scene
 
 
@@ -81,14 +84,14 @@ def test_distributions_rise(make):
 def test_paths_lead_to_the_value(path, value, get):
     base = scene()
     before = get(base) if path not in ("trolley.friction.coefficient", "equilibrium.load_steps") else None
-    made = changed(base, {path_of(base, path): value})
+    made = changed(base, {path: value})
     assert get(made) == value != before
     assert made.to_toml() != base.to_toml() == scene().to_toml()
 
 
 def test_what_is_not_swept_stays():
     base = scene()
-    made = changed(base, {path_of(base, "A.velocity.x"): 0.5})
+    made = changed(base, {"A.velocity.x": 0.5})
     assert made.bodies["A"].velocity == (0.5, 0, 0)
     assert made.to_toml().replace("0.5, 0.0, 0.0]", "1.0, 0.0, 0.0]", 1) == base.to_toml()
 
@@ -97,14 +100,45 @@ def test_several_values_of_one_part_are_changed_at_once():
     """A change one by one would pass through a static coefficient below the sliding one."""
     base = scene().replace("trolley", friction=Friction(coefficient=0.1, static_coefficient=0.1))
     values = {"trolley.friction.coefficient": 0.4, "trolley.friction.static_coefficient": 0.5}
-    friction = changed(base, {path_of(base, path): value for path, value in values.items()}).slides["trolley"].friction
+    friction = changed(base, values).slides["trolley"].friction
     assert (friction.coefficient, friction.static_coefficient) == (0.4, 0.5)
 
 
 def test_a_part_and_what_stands_on_it_are_changed_at_once():
     base = scene()
-    made = changed(base, {path_of(base, "wire.end.x"): 2.0, path_of(base, "wire@1.5.s"): 2.0})
+    made = changed(base, {"wire.end.x": 2.0, "wire@1.5.s": 2.0})
     assert made.cables["wire"].length == 2.0 and made.pins[1].s == 2.0
+
+
+def outcome(change) -> tuple | str:
+    """Return the text and the messages of a changed scene, or why it is refused."""
+    try:
+        made = change()
+    except SceneError as error:
+        return str(error)
+    return made.to_toml(), made.messages
+
+
+@pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
+@pytest.mark.parametrize("name", ["aerial_tramway", "block_and_tackle", "cable_car", "elevator", "paper51", "zip_line"])
+def test_parts_before_the_first_that_changes_are_added_once(name, monkeypatch):
+    """Scenes, messages and refusals are those of a change of the whole scene, which stays."""
+    base, added, add = load_scene(name), [], Scene.add
+    before, parts = base.to_toml(), [*base.parts()]
+    monkeypatch.setattr(Scene, "add", lambda self, part: added.append(part) or add(self, part))
+    for number, part in enumerate(parts):
+        entries = part.as_made().entries()
+        key = next((key for key, value in entries.items() if isinstance(value, float) and value), None)
+        if key is None or label_of(part) is None:
+            continue
+        path = path_of(base, f"{label_of(part)}.{key}")
+        variants = Variants(base, [path])
+        for value in (entries[key], 1.0001 * entries[key], -entries[key]):
+            added.clear()
+            found = outcome(partial(variants.at, {path: value}))
+            assert len(added) <= len(parts) - number
+            assert found == outcome(partial(base.changed, [(part, {key: value})]))
+    assert base.to_toml() == before
 
 
 @pytest.mark.parametrize("path, unit", [
@@ -140,7 +174,7 @@ def test_paths_that_lead_nowhere_are_refused(path, words):
 def test_entries_that_are_not_there_are_refused_with_the_value(path, words):
     base = scene()
     with pytest.raises(SceneError, match=words):
-        changed(base, {path_of(base, path): 1.0})
+        changed(base, {path: 1.0})
 
 
 @pytest.mark.parametrize("text, method, values", [
