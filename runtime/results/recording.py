@@ -80,12 +80,14 @@ def coordinates(model: Model, time: np.ndarray) -> dict[str, Variable]:
     return coords
 
 
-def recorded(simulation: Simulation, scene: SceneData, settings: RunSettings) -> Recording:
-    """Return the rows of the engine by name, and the report on the run."""
+def recorded(simulation: Simulation, scene: SceneData, settings: RunSettings, timed: bool = True) -> Recording:
+    """Return the rows of the engine by name, and the report on the run; timed: with the times of slides and joints,
+    whose measurement takes up to 0.1 ms.
+    """
     begin = time.perf_counter()
     model, engine, status = simulation.model, simulation.engine, simulation.status
     statistics = engine.statistics
-    costs, rows = _costs(model, engine), engine.rows()
+    costs, rows = _costs(model, engine) if timed else {}, engine.rows()
     coords = coordinates(model, rows["time"])
     results = time.perf_counter() - begin
     seconds = {"set_up": simulation.set_up_s, "start": simulation.start_s, "results": simulation.notes_s + results,

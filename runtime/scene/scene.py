@@ -126,8 +126,12 @@ class Scene(Viewable, DescribedScene):
         return run
 
     def _in_stages(self, settings_given: Mapping[str, Any], resume: bool,
-                   progress: bool | Callable[[float], None] | None, trials: TrialCache | None = None) -> Stages[Run]:
-        """Return the work of a run, see `_run`, after its checks; Ctrl-C must not interrupt it between its parts."""
+                   progress: bool | Callable[[float], None] | None, trials: TrialCache | None = None,
+                   timed: bool = True) -> Stages[Run]:
+        """Return the work of a run, see `_run`, after its checks; Ctrl-C must not interrupt it between its parts.
+
+        timed: whether the report is to have the times of slides and joints.
+        """
         given = {name: value for name, value in settings_given.items() if value is not None}
         initial = given.get("initial")
         state = None if initial is None or isinstance(initial, str) else _state(self, initial)
@@ -143,7 +147,7 @@ class Scene(Viewable, DescribedScene):
         scene, state = scene._adjusted(settings, state)
         scene._check_for(settings)
         _check_resume(resume, settings)
-        return scene._simulated(settings, state, resume, progress, chosen, trials)
+        return scene._simulated(settings, state, resume, progress, chosen, trials, timed)
 
     def _adjusted(self, settings: RunSettings, state: Start | None) -> tuple[Self, Start | None]:
         """Return the scene and the state at the start of a run, adjusted where the scene's file adjusts parameters."""
@@ -202,7 +206,7 @@ class Scene(Viewable, DescribedScene):
 
     def _simulated(self, settings: RunSettings, state: Start | None, resume: bool,
                    progress: bool | Callable[[float], None] | None, chosen: Choice[Self] | None = None,
-                   trials: TrialCache | None = None) -> Stages[Run]:
+                   trials: TrialCache | None = None, timed: bool = True) -> Stages[Run]:
         """Return the run with these settings, from a state or as the settings say, in stages. Raises EndOfCableError,
         RopeLeftError and ConvergenceError.
         """
@@ -217,7 +221,7 @@ class Scene(Viewable, DescribedScene):
             flat = in_plane(self)
             with progress_bar(settings.duration, progress) as on_progress:
                 simulation = yield from simulate(flat, settings, on_progress, state, stream, trials)
-            recording = recorded(simulation, flat, settings)
+            recording = recorded(simulation, flat, settings, timed)
             if chosen is not None:
                 recording.report["choice"] = chosen.facts()
                 recording.report["messages"] = [*chosen.messages(), *recording.report["messages"]]

@@ -96,7 +96,7 @@ def _results(scenes: Iterator[Scene | Callable[[], Scene]], threads: int, keep: 
         if scene.run_settings.get("save") is not None:
             raise SceneError("run", '"save" in the scene\'s settings names a file of one run',
                              "leave it out where many scenes run")
-        return scene._in_stages(settings | {"threads": 1}, False, abandonment.watch, trials)
+        return scene._in_stages(settings | {"threads": 1}, False, abandonment.watch, trials, timed=keep is None)
 
     def results(group: list[Scene | Callable[[], Scene]]) -> list[Ended[Result]]:
         return [_kept(*ended, keep) for ended in in_step(partial(begun, of) for of in group)]

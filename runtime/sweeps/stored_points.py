@@ -74,6 +74,11 @@ class Keep:
         texts = [f"{name} {what if isinstance(what, str) else identity_of(what)}" for name, what in self.wanted.items()]
         return hashlib.sha256("\n".join(texts).encode()).hexdigest()
 
+    @property
+    def takes_runs(self) -> bool:
+        """Return whether functions take the runs, with their reports."""
+        return any(callable(what) for what in self.wanted.values())
+
     def check(self, scene: SceneData) -> None:
         """Raise SceneError where there are no names, or one that is no result of this scene."""
         if not self.wanted:

@@ -231,14 +231,14 @@ def _outcomes(make: Callable[[Mapping[str, Any]], Any], points: Sequence[Mapping
     """
     made = [_attempt(make, point, keep) for point in points]
     with uninterrupted(), one_blas_thread, interruptible():  # for all runs at once: each would set and reset it
-        ends = in_step(partial(_begun, each, watch) for each in made if isinstance(each, Scene))
+        ends = in_step(partial(_begun, each, watch, keep.takes_runs) for each in made if isinstance(each, Scene))
         ran = [_of_run(ends, keep) if isinstance(each, Scene) else each for each in made]
     return [each for each in ran if isinstance(each, Outcome)]
 
 
-def _begun(scene: Scene, watch: Watch | None) -> Stages[Run]:
+def _begun(scene: Scene, watch: Watch | None, timed: bool) -> Stages[Run]:
     """Return the work of a run, after its checks; it raises KeyboardInterrupt where it is interrupted."""
-    work = scene._in_stages({}, False, watch or False)
+    work = scene._in_stages({}, False, watch or False, timed=timed)
 
     def whole() -> Stages[Run]:
         run = yield from work

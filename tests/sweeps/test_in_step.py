@@ -7,6 +7,7 @@ import funicular as fu
 import numpy as np
 import pytest
 from funicular.base.stages import StageClock, at_once
+from funicular.results import recording
 from funicular.sweeps import in_step as module
 from funicular.sweeps.in_step import in_step
 from funicular.sweeps.stored_points import Keep
@@ -73,6 +74,17 @@ def test_times_of_runs_in_step_are_their_own():
     begin = time.perf_counter()
     found = fu.sweep(scene(), MASSES, keep={"total": lambda run: run.report["time_s"]["total"]}, **ALONE)
     assert found["total"].values.sum() < found.seconds.values.sum() < time.perf_counter() - begin
+
+
+def test_slides_are_timed_where_reports_are_read(monkeypatch):
+    timed, costs = [], recording._costs
+    monkeypatch.setattr(recording, "_costs", lambda *given: timed.append(given) or costs(*given))
+    fu.sweep(scene(), MASSES, keep=["A.position"], **ALONE)
+    [*fu.run_many([scene()], keep=["A.position"])]
+    assert not timed
+    assert next(fu.run_many([scene()])).report["us_per_step"]["trolley"] > 0
+    found = fu.sweep(scene(), MASSES, keep={"cost": lambda run: run.report["us_per_step"]["trolley"]}, **ALONE)
+    assert (found["cost"].values > 0).all() and len(timed) == 1 + len(MASSES["A.mass"])
 
 
 def test_runs_in_step_are_those_of_their_scenes():
