@@ -292,6 +292,7 @@ LOADS: dict[str, Callable[[Site], object]] = {
                                                                     scale=signal) for form, signal in SIGNALS.items()},
     "force": lambda on: on.scene.force("wire", s=on.at(0.3), value=(0, -1, 0)),
     "following force": lambda on: on.scene.force("wire", s=on.at(0.3), value=(1, 0, 0), follower=True),
+    "moving force": lambda on: on.scene.force("wire", s=SIGNALS["ramp"], offsets=(0, 0.1), value=(0, -20, 0)),
     "line load": lambda on: on.scene.distributed_force("wire", value=(0, -1, 0), start=0.1, stop=on.at(0.5)),
     "following line load": lambda on: on.scene.distributed_force("wire", value=(1, 0, 0), follower=True),
     "moment": lambda on: on.scene.moment("wire", s=on.at(0.3), value=(0, 0, 0.01)),

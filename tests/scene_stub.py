@@ -63,6 +63,7 @@ TYPES = {
     "AnySignal": "Scale", "AnyProfile": "Profile", "AnySurfaceShape": "Part | dict[str, Any]", "CableEnd": "str | Stop",
     "VelocityTable": "VelocityTable | dict[str, Any]", "Polar": "Polar | dict[str, Any]",
     "added_mass": "float | Numbers | Points",
+    "PlaceOrSignal": "Scale", "Offsets": "Numbers", "Shares": "Numbers",
     "ForceTable": "ForceTable | dict[str, Numbers]",
     "Displacement": "Sequence[Scale | str | None]", "Rotation": "tuple[Numbers, Scale]",
     "Listed": "Named | Sequence[Named]", "Route": "Sequence[Anchor | Block | Drum | Sheave | dict[str, Any]]",

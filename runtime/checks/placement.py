@@ -19,6 +19,7 @@ from ..parts.part import Part
 from ..parts.point_force import PointForce
 from ..parts.rope import Rope
 from ..parts.scene_data import SceneData
+from ..parts.signal import Signal, presence_of
 from ..parts.support import Support, Tie
 from ..parts.validation import LENGTH_TOLERANCE, show
 from .frames import plane_normal
@@ -125,6 +126,8 @@ def placed_load(scene: SceneData, load: Force | DistributedForce | Moment) -> Pa
         if not start < stop:
             raise SceneError(load.where, f"stop must be beyond start {show(start, 'm')}, got {show(stop, 'm')}")
         load = load.completed({"start": start, "stop": stop})
+    elif isinstance(load, Force) and isinstance(load.s, Signal):
+        _check_moving(scene, load, load.s)
     else:
         at = getattr(load, "at", None)
         end = placed_attachment(scene, Attachment(on=load.on, s=load.s, at=at), load.where)
@@ -137,6 +140,23 @@ def placed_load(scene: SceneData, load: Force | DistributedForce | Moment) -> Pa
     if cable is not None and cable.dim == 3 and not cable.kind_of_element.director:
         _check_without_section(load, cable)
     return load
+
+
+def _check_moving(scene: SceneData, load: Force, s: Signal) -> None:
+    """Raise SceneError for a force that cannot move, or is never on its cable, or whose sine leaves it."""
+    if load.on in scene.bodies or load.on in scene.ropes:
+        raise SceneError(load.where, f'moves along "{load.on}", which is no cable', "give s as a number")
+    cable = cable_at(scene, load.on, load.where, 0.0)
+    if load.at is not None:
+        raise SceneError(load.where, f'acts on cable "{load.on}" and takes no point at', "leave at out")
+    for offset in load.offsets:
+        presence = presence_of(s, offset, cable.length)
+        if presence is None:
+            raise SceneError(load.where, f"s is a sine that leaves the cable, [0, {cable.length:.9g}] m, at the offset "
+                             f"{show(offset, 'm')}", "take a smaller amplitude, or a TableSignal")
+        if not presence[1].any():
+            raise SceneError(load.where, f"is never on the cable, [0, {cable.length:.9g}] m, at the offset "
+                             f"{show(offset, 'm')}: s starts at {show(float(s.value(0.0)), 'm')}")
 
 
 def _check_without_section(load: Force | DistributedForce | Moment, cable: Cable) -> None:

@@ -8,6 +8,7 @@ from ..parts.load import DistributedForce, Force, Load, Moment
 from ..parts.part import Part
 from ..parts.rope import Rope
 from ..parts.scene_data import SceneData
+from ..parts.signal import Signal
 from .placement import check_has_mass, placed_load, placed_on_rope
 
 
@@ -18,7 +19,7 @@ def rope_of(scene: SceneData, load: Load) -> Rope | None:
 
 def placed(scene: SceneData, load: Force | DistributedForce | Moment) -> Part:
     """Return the load with its place complete, on a rope checked to lie in a span or along it. Raises SceneError."""
-    if (rope := rope_of(scene, load)) is None:
+    if (rope := rope_of(scene, load)) is None or isinstance(getattr(load, "s", None), Signal):
         return placed_load(scene, load)
     if isinstance(load, Moment):
         raise SceneError(load.where, f'acts on rope "{rope.name}", whose sections have no axes on which a moment could '

@@ -118,7 +118,7 @@ def _on_planar_cable(scene: SceneData, load: Force | DistributedForce) -> Force 
     on, s = (load.cable, load.start) if isinstance(load, DistributedForce) else (load.on, load.s)
     if not (load.follower and on in scene.cables and any(load.value[1:])):
         return load
-    axes = scene.cables[on].axes_at(s or 0.0)
+    axes = scene.cables[on].axes_at(s if isinstance(s, float) else 0.0)
     planar = np.array([axes[0], np.cross((0.0, 0.0, 1.0), axes[0]), (0.0, 0.0, 1.0)])
     return load.model_copy(update={"value": tuple(aligned(planar @ axes.T @ load.value).tolist())})
 

@@ -105,7 +105,7 @@ def coarsest(scene: SceneData, cable: Cable) -> int:
 def node_places(scene: SceneData, cable: Cable) -> list[float]:
     """Return the arc-lengths of a cable's supports, ties, watched nodes, point loads and joints, in m."""
     loads = [load.s for load in scene.loads.values()
-             if isinstance(load, Force | Moment) and load.on == cable.name and load.s is not None]
+             if isinstance(load, Force | Moment) and load.on == cable.name and isinstance(load.s, float)]
     return [*_supported(scene, cable), *loads, *(end.arc_length for end in scene.attachments() if end.on == cable.name)]
 
 

@@ -12,6 +12,7 @@ import math
 
 import numpy as np
 
+from .loads import LoadModel
 from .model import Model
 from .signals import SignalModel
 
@@ -27,17 +28,20 @@ INSTANT_TOLERANCE = 1e-12
 """Distance of coincident breakpoints, as a fraction of the duration (engine/equations/run.h)."""
 
 
-def breakpoints(model: Model, duration: float, tol: float, turns: bool = True) -> tuple[np.ndarray, np.ndarray]:
+def breakpoints(model: Model, duration: float, tol: float, turns: bool = True, nodes: bool = True
+                ) -> tuple[np.ndarray, np.ndarray]:
     """Return the times of the significant breakpoints, in s, increasing, and what jumps at each.
 
-    turns: whether extremes of tables are included. A breakpoint at the end of the run is included: the last row is of
-    the instant before it.
+    turns: whether extremes of tables are included; nodes: whether the passages of nodes by moving loads are, where the
+    second derivative of a generalised force jumps, which a method of order 2 does not notice. A breakpoint at the end
+    of the run is included: the last row is of the instant before it.
     """
     driving, inertial = driving_signals(model), {drag.signal for drag in model.drags if drag.has_inertia}
     found = [each for number, signal in enumerate(model.signals)
              for each in _of_signal(signal, number in driving, number in inertial, tol)]
     if model.drags:
         found += _of_tables(model)
+    found += _of_moving_loads(model, duration, nodes)
     if turns:
         found += [each for signal in model.signals for each in _turns(signal.breaks, signal.coefficients[:, 0], tol)
                   if each[0] < (1 - INSTANT_TOLERANCE) * duration]
@@ -56,6 +60,18 @@ def breakpoints(model: Model, duration: float, tol: float, turns: bool = True) -
 def driving_signals(model: Model) -> set[int]:
     """Return the numbers of the signals that prescribe motions; the others scale loads."""
     return {motion.signal for motion in model.motions} | {coupling.drive for coupling in model.couplings}
+
+
+def _of_moving_loads(model: Model, duration: float, nodes: bool) -> list[tuple[float, int]]:
+    """Return the times at which moving loads come on their cables and leave them, and pass their nodes."""
+    found = []
+    for load in model.of(LoadModel):
+        if load.presence >= 0:
+            found += [(float(time), ACCELERATION) for time in model.signals[load.presence].breaks[1:-1]]
+        if load.place >= 0 and nodes:
+            levels = model.cables[load.on.cable].mesh.node_s[1:-1] - load.x
+            found += [(float(time), HIGHER) for time in model.signals[load.place].times_at(levels, duration)]
+    return found
 
 
 def _of_tables(model: Model) -> list[tuple[float, int]]:

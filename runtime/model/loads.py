@@ -10,6 +10,7 @@ from ..base.deferred import dataclass
 from ..checks.placement import placed_attachment
 from ..parts.attachment import Attachment
 from ..parts.load import DistributedForce, Force, Load, Moment
+from ..parts.signal import Signal, presence_of
 from .attachments import AttachmentModel, ModelBuilder
 from .coupling import CouplingKind, CouplingModel
 from .span_coordinates import AlongSpan, SpanCoordinates
@@ -38,8 +39,9 @@ class DeadLoadModel(CouplingModel):
 class LoadModel(CouplingModel):
     """A load that depends on rotations of its cable or body, or a force on a point of a rope.
 
-    kind: cable_follower, cable_moment, body_force, also on a rope, body_follower or body_moment; x: place in an
-    element, m.
+    kind: cable_follower, cable_moment, cable_force, body_force, also on a rope, body_follower or body_moment; x: place
+    in an element, m. Of one that moves along its cable, place and presence are the numbers of the signals of its
+    arc-length, from which x is an offset, and of whether it is on the cable (-1: always).
     """
 
     kind: str
@@ -47,6 +49,8 @@ class LoadModel(CouplingModel):
     on: AttachmentModel
     x: float
     c: tuple[float, float, float]
+    place: int = -1
+    presence: int = -1
 
     @property
     def kernel_families(self) -> list[str]:
@@ -85,6 +89,9 @@ class LoadBuilder:
         value = factor * np.array(load.value)
         if isinstance(load, DistributedForce):
             self._distributed(load, number, value)
+        elif isinstance(load.s, Signal):
+            assert isinstance(load, Force), f"{load.where} does not move"
+            self._moving(load, load.s, number, value)
         elif load.on in self.builder.cable_index:
             assert load.s is not None, f"{load.where} is not complete"
             points = [(*self.builder.element(load.on, load.s), 1.0)]
@@ -103,6 +110,17 @@ class LoadBuilder:
     def all(self) -> list[AnyLoadModel]:
         """Return the models in the engine's order."""
         return [*self.dead, *self.turning, *self.along]
+
+    def _moving(self, load: Force, s: Signal, number: int, value: np.ndarray) -> None:
+        """Add the axles of a load that moves along its cable."""
+        on, place = self.builder.cable_index[load.on], self.builder.signals.add(s)
+        kind = "cable_follower" if load.follower else "cable_force"
+        for offset, share in load.axles:
+            presence = presence_of(s, offset, self.cables[on].mesh.total)
+            assert presence is not None, f"{load.where} leaves the cable"
+            x, y, z = share * value
+            self.turning.append(LoadModel(kind, number, AttachmentModel(cable=on), offset, (x, y, z), place,
+                                          self.builder.signals.add_steps(*presence), type="load"))
 
     def _distributed(self, load: DistributedForce, number: int, value: np.ndarray) -> None:
         if load.cable in self.scene.ropes:

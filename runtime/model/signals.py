@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..base.deferred import dataclass
-from ..parts.signal import Constant, Signal, Sine, value_at
+from ..parts.signal import DEGREE, Constant, Signal, Sine, times_at, value_at
 
 
 @dataclass
@@ -23,6 +23,11 @@ class SignalModel:
         sine = Sine(self.amplitude, self.angular_frequency, self.phase)
         return value_at(sine, self.breaks, self.coefficients, time, derivative)
 
+    def times_at(self, levels: np.ndarray, until: float) -> np.ndarray:
+        """Return the times, in s, between 0 and ``until`` at which the signal has one of these values, sorted."""
+        sine = Sine(self.amplitude, self.angular_frequency, self.phase)
+        return times_at(sine, self.breaks, self.coefficients, levels, until)
+
     def at(self, time: float) -> float:
         """Return the signal at a time in s."""
         return float(self.value(np.asarray(time)))
@@ -38,6 +43,15 @@ class Signals(list[SignalModel]):
         breaks, coefficients = signal.pieces()
         self.append(SignalModel(np.asarray(breaks, dtype=float), np.asarray(coefficients, dtype=float),
                                 *signal.sine))
+        return len(self) - 1
+
+    def add_steps(self, times: np.ndarray, values: np.ndarray) -> int:
+        """Store a signal that has each value from its time on and return its number, -1 for one that is always one."""
+        if np.all(values == 1):
+            return -1
+        coefficients = np.zeros((len(times), DEGREE + 1))
+        coefficients[:, 0] = values
+        self.append(SignalModel(np.append(times, times[-1] + 1.0), coefficients, *Sine()))
         return len(self) - 1
 
     def scale(self, signal: Signal) -> tuple[int, float]:

@@ -1,12 +1,27 @@
 """Loads: forces, distributed forces and moments, each a value times a signal of time."""
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import Annotated, Any
 
 from pydantic import model_validator
 
 from .part import Part
-from .signal import ONE, AnySignal
-from .validation import Flag, Name, Reference, Vector, place_on, show, xyz
+from .schemas import Check, Place, checked, number_schema
+from .signal import ONE, SIGNALS, AnySignal, Signal, signal
+from .validation import Flag, Name, Reference, Vector, list_of, number, place_on, show, xyz
+
+
+def moving_place_on(of: str) -> Check:
+    """Return the check of an arc-length in m, or of a signal of it, along the cable that the attribute names."""
+    def check(value: Any) -> float | Signal:
+        return signal(value) if isinstance(value, Signal | Mapping) else number(value, "m")
+
+    return checked(check, {"anyOf": [number_schema("m"), SIGNALS.schema]}, Place(of))
+
+
+PlaceOrSignal = Annotated[float | Signal, moving_place_on("on")]
+Offsets = Annotated[tuple[float, ...], list_of("m", least=1)]
+Shares = Annotated[tuple[float, ...], list_of(least=1)]
 
 
 class Load(Part):
@@ -21,13 +36,16 @@ class Load(Part):
 
 
 class Force(Load):
-    """A force at a point of a cable, of a rope or of a body.
+    """A force at a point of a cable, of a rope or of a body, or forces that move along a cable.
 
-    On a rope it acts on a material point in a span, see `Rope`.
+    On a rope it acts on a material point in a span, see `Rope`. Where ``s`` is a signal it moves: off the ends of the
+    cable nothing acts, as of a train on a bridge.
 
     on: the cable, the rope or the body
     value: components of the force, N
-    s: of a cable, a rope or a modal beam, the arc-length, m
+    s: of a cable, a rope or a modal beam, the arc-length, m; of a cable also a signal of it
+    offsets: of a moving force, distances of the axles of a train from ``s``, positive towards the end of the cable, m
+    shares: factors of ``value`` at the axles, by default one each
     at: of a body, the point in body axes, m; by default its origin (a modal body's first node)
     follower: whether the components are along local axes, of a cable (tangent, height, width), of a body its own, of a
         modal body those of the section there; else along the ground's
@@ -36,7 +54,9 @@ class Force(Load):
     kind = "force"
     positional = ("on",)
     on: Reference
-    s: Annotated[float, place_on("on")] | None = None
+    s: PlaceOrSignal | None = None
+    offsets: Offsets = (0.0,)
+    shares: Shares | None = None
     at: Annotated[Vector, xyz("m", of="on")] | None = None
     value: Annotated[Vector, xyz("N", of="along")]
     follower: Flag = False
@@ -45,6 +65,20 @@ class Force(Load):
     def along(self) -> str | None:
         """Return the part in whose axes its components are, None for the ground."""
         return self.on if self.follower else None
+
+    @property
+    def axles(self) -> list[tuple[float, float]]:
+        """Return the offset in m and the share of each force."""
+        return list(zip(self.offsets, self.shares or (1.0,) * len(self.offsets), strict=True))
+
+    @model_validator(mode="after")
+    def _moves_as_a_train(self) -> "Force":
+        if not isinstance(self.s, Signal) and (self.offsets != (0.0,) or self.shares is not None):
+            raise ValueError("offsets and shares are of a force that moves", "give s as a signal, or leave them out")
+        if self.shares is not None and len(self.shares) != len(self.offsets):
+            raise ValueError(f"offsets and shares must be of equal length, got {len(self.offsets)} and "
+                             f"{len(self.shares)}")
+        return self
 
 
 class DistributedForce(Load):

@@ -19,6 +19,7 @@ from .rope import Rope
 from .rope_items import RouteItem
 from .scene_data import SceneData
 from .schemas import Place
+from .signal import Signal
 from .slide import Slide
 from .support import Support, Tie
 from .surface import Surface
@@ -75,7 +76,7 @@ def grips(scene: SceneData) -> Iterator[tuple[Part, str, Attachment]]:
     if not scene.ropes:
         return
     for part in scene.parts():
-        if isinstance(part, Force) and part.on in scene.ropes:
+        if isinstance(part, Force) and part.on in scene.ropes and isinstance(part.s, float):
             yield part, "", Attachment(on=part.on, s=part.s)
         if isinstance(part, Slide) and part.body in scene.ropes:
             yield part, "body", part.rider
@@ -103,7 +104,7 @@ def on_cables(part: Part, moving: bool = True) -> Iterator[tuple[str, str, float
     for name, place in about_fields(type(part)).items():
         if isinstance(place, Place) and (moving or not place.moves):
             on, s = getattr(part, place.of), getattr(part, name)
-            if on is not None and s is not None:
+            if on is not None and s is not None and not isinstance(s, Signal):
                 yield name, on, s
 
 

@@ -32,6 +32,8 @@ MIN_INTERVAL = 1e-12, 1e-14
 
 CANCELLATION_TOLERANCE = 1e-12
 """Of the largest term: rounding of a sum that is zero."""
+ROOT_TOLERANCE = 1e-12
+"""Rounding of the times and places at which a signal has a value, as a fraction."""
 _RISE = np.array([0, 0, 0, 10, -15, 6, 0])
 """The polynomial from 0 to 1 over [0, 1] whose first and second derivatives vanish at both ends."""
 
@@ -80,6 +82,63 @@ def value_at(sine: Sine, breaks: np.ndarray, coefficients: np.ndarray, time: "Ar
             result = result * since + factor * coefficients[piece, power]
     amplitude, w, phase = sine
     return result + amplitude * w**derivative * np.sin(w * time + phase + derivative * pi / 2)
+
+
+def times_at(sine: Sine, breaks: np.ndarray, coefficients: np.ndarray, levels: np.ndarray, until: float
+             ) -> np.ndarray:
+    """Return the times, in s, after 0 and before ``until`` at which a signal has one of the values ``levels``, sorted.
+
+    A sine is that of a signal whose polynomials are constant.
+    """
+    found = [np.zeros(0)]
+    if sine.amplitude:
+        x = (np.asarray(levels) - coefficients[0, 0]) / sine.amplitude
+        angle = np.arcsin(x[np.abs(x) <= 1])
+        angles = np.concatenate([angle, pi - angle]) - sine.phase
+        turns = 2 * pi * np.arange(-1, 2 + until * sine.angular_frequency / (2 * pi))
+        found.append(((angles % (2 * pi))[:, None] + turns).ravel() / sine.angular_frequency)
+    ends = np.concatenate([[-np.inf], breaks[1:-1], [np.inf]])
+    for k, row in enumerate(coefficients):
+        low, high = max(ends[k], 0.0), min(ends[k + 1], until)
+        if low < high and row[1:].any():
+            for level in levels:
+                found.append(_roots(row, level, low - breaks[k], high - breaks[k]) + breaks[k])
+    times = np.unique(np.concatenate(found))
+    return times[(times > 0) & (times < until)]
+
+
+def _roots(row: np.ndarray, level: float, low: float, high: float) -> np.ndarray:
+    """Return the real places between ``low`` and ``high`` at which a polynomial, by ascending powers, has a value."""
+    if np.isfinite(high):
+        reach = np.abs(row[1:]) @ np.maximum(abs(low), abs(high)) ** np.arange(1, len(row))
+        if abs(level - row[0]) > reach:
+            return np.zeros(0)
+    if not row[2:].any():
+        roots = np.array([(level - row[0]) / row[1]])
+    else:
+        given = np.roots([*row[:0:-1], row[0] - level])
+        roots = given.real[np.abs(given.imag) <= ROOT_TOLERANCE * np.abs(given)]
+    slack = ROOT_TOLERANCE * (high - low) if np.isfinite(high) else 0.0
+    return roots[(roots >= low - slack) & (roots <= high + slack)]
+
+
+def presence_of(s: Signal, offset: float, length: float) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return when a place s + offset is in [0, length]: times, in s, and whether it is there from each of them on, the
+    first time is 0; None of a sine that leaves it.
+    """
+    sine, (breaks, coefficients) = s.sine, s.pieces()
+    if sine.amplitude:
+        middle = coefficients[0, 0] + offset
+        stays = not coefficients[:, 1:].any() and abs(sine.amplitude) <= min(middle, length - middle)
+        return (np.zeros(1), np.ones(1, dtype=bool)) if stays else None
+    levels = np.array([0.0, length]) - offset
+    times = np.unique([*times_at(sine, breaks, coefficients, levels, np.inf), *breaks[breaks > 0]])
+    starts = np.append(0.0, times)
+    middle = np.append((starts[1:] + starts[:-1]) / 2, starts[-1] + 1.0)
+    place, slack = value_at(sine, breaks, coefficients, middle) + offset, ROOT_TOLERANCE * length
+    there = (place >= -slack) & (place <= length + slack)
+    changes = np.append(True, there[1:] != there[:-1])
+    return starts[changes], there[changes]
 
 
 def _check_apart(times: Iterable[float]) -> None:

@@ -180,7 +180,8 @@ OTHERS = {
     "slide": {"body": (0.5, 0, 0), "along": "rope", "s": 0.5, "at": (0, 0, 0.0), "name": "x", "frame": "point",
               "roll": "free", "up": (0, 1, 1), "drive": 0.5, "velocity": 0.1, "friction": fu.Friction(coefficient=0.2),
               "at_start": "leave", "at_end": fu.HardStop(restitution=0.5)},
-    "force": {"on": "A", "at": (0, 0, 0), "value": (2, 0, 0), "scale": 2.0, "follower": True, "name": "x"},
+    "force": {"on": "A", "at": (0, 0, 0), "value": (2, 0, 0), "scale": 2.0, "follower": True, "name": "x",
+              "offsets": (0, -1), "shares": (2,)},
     "distributed_force": {"cable": "hook", "value": (0, -2, 0), "start": 0.25, "stop": 0.75, "follower": False,
                           "scale": 2.0, "name": "x"},
     "moment": {"on": "B", "s": 0.25, "value": (0, 0, 2), "scale": 2.0, "name": "x"},
@@ -204,6 +205,8 @@ OTHERS = {
 REFUSED = {
     ("slide", "frame"): 'roll "fixed" is for frame "tangent", got frame "point"; leave it out, or take frame="tangent"',
     ("moment", "on"): 'acts on body "B" and takes no arc-length s',
+    ("force", "offsets"): "offsets and shares are of a force that moves",
+    ("force", "shares"): "offsets and shares are of a force that moves",
     ("cable", "name"): 'there is no cable "rope"',
     ("rigid_body", "name"): 'there is no cable or body "A"',
     ("fluid", "name"): 'there is no fluid "air"',

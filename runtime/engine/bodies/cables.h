@@ -71,6 +71,14 @@ static inline double fu_cable_start(const fu_cable *cable, int element)
     return cable->nodes ? cable->nodes[element] : element * cable->length;
 }
 
+/* Returns the element at an arc-length on the cable. */
+static inline int fu_cable_element_at(const fu_cable *cable, double s)
+{
+    if (cable->nodes) return fu_last_reached(cable->nodes, 0, cable->n_elements, s);
+    const int element = (int)(s / cable->length);
+    return element < cable->n_elements ? element : cable->n_elements - 1;
+}
+
 /* Returns the mass matrix of an element over nodal vectors. */
 static inline const double *fu_element_mass(const fu_cable *cable, int element)
 {

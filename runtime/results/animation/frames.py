@@ -66,12 +66,12 @@ def along(cable: Cable, s: np.ndarray, nodal_vectors: np.ndarray, slope: int | N
     return np.asarray(np.einsum("nk,...nkd->...nd", N, pairs, optimize=True))
 
 
-def moving(cable: Cable, s: np.ndarray, nodal_vectors: np.ndarray) -> np.ndarray:
-    """Return the points (T, 3) of a cable at one arc-length s (T,) of each instant.
+def moving(cable: Cable, s: np.ndarray, nodal_vectors: np.ndarray, slope: int | None = None) -> np.ndarray:
+    """Return the points (T, 3) of a cable at one arc-length s (T,) of each instant, or a slope there.
 
-    nodal_vectors: (T, nodes, ...), or (1, nodes, ...) of a cable at rest.
+    nodal_vectors: (T, nodes, ...), or (1, nodes, ...) of a cable at rest; slope: as of `weights`.
     """
-    element, N = weights(cable, s)
+    element, N = weights(cable, s, slope)
     instants = np.arange(len(s)) if len(nodal_vectors) > 1 else np.zeros(len(s), dtype=int)
     pairs = np.concatenate([nodal_vectors[instants, element], nodal_vectors[instants, element + 1]], axis=1)
     return np.asarray(np.einsum("tk,tkd->td", N, pairs))

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Literal
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Literal, NamedTuple
 
 import numpy as np
 
 from ...base.rotations import product, rotate, turned_by
 from ...model.kinds import COUPLINGS
 from ...parts.attachment import Attachment
+from ...parts.cable import Cable
 from ...parts.crossing import Crossing
 from ...parts.joint import Joint
 from ...parts.load import DistributedForce, Force, Load, Moment
@@ -19,6 +21,7 @@ from ...parts.part import Part
 from ...parts.rope import Rope
 from ...parts.rope_items import Wheel
 from ...parts.scene_data import SceneData
+from ...parts.signal import Signal
 from ...parts.support import Clamp, Motion, Support
 from ...parts.validation import Vector, show, vector3
 from ...view.animation import Mark, Segment
@@ -201,33 +204,64 @@ def levers(frames: Frames, refs: Frames, size: float) -> Iterator[Segment]:
             yield _between(frames, refs, f"{end.on}, {name}", "lever", centre, end)
 
 
-def _arrows(frames: Frames, refs: Frames, longest: float, found: list[tuple[str, Attachment, np.ndarray]]
-            ) -> Iterator[Segment]:
-    """Yield vectors (T or 1, 3) by name as arrows with their heads at attachments, scaled to the longest."""
-    largest = max((float(np.linalg.norm(value, axis=-1).max()) for _, _, value in found), default=0.0)
-    for name, end, value in found if largest > 0 else ():
-        at, of, arrow = place(frames, end), place(refs, end), longest / largest * value
+class _Arrow(NamedTuple):
+    """A vector value (T or 1, 3) as an arrow with its head at points (T or 1, 3), and at those of reference."""
+
+    name: str
+    at: np.ndarray
+    of: np.ndarray
+    value: np.ndarray
+
+
+def _arrow(frames: Frames, refs: Frames, name: str, end: Attachment, value: np.ndarray) -> _Arrow:
+    """Return an arrow with its head at an attachment."""
+    return _Arrow(name, place(frames, end), place(refs, end), value)
+
+
+def _arrows(longest: float, found: list[_Arrow]) -> Iterator[Segment]:
+    """Yield arrows, scaled to the longest."""
+    largest = max((float(np.linalg.norm(each.value, axis=-1).max()) for each in found), default=0.0)
+    for name, at, of, value in found if largest > 0 else ():
+        arrow = longest / largest * value
         yield Segment(name, "load", at - arrow, at, _both(of - arrow, of))
 
 
 def _loads(frames: Frames, refs: Frames, longest: float) -> Iterator[Segment]:
     """Yield forces as arrows, and distributed forces in a scale of their own."""
-    forces: list[tuple[str, Attachment, np.ndarray]] = []
-    distributed: list[tuple[str, Attachment, np.ndarray]] = []
+    forces: list[_Arrow] = []
+    distributed: list[_Arrow] = []
     for name, load in frames.scene.loads.items():
         scale = _scale(frames, load)
-        if isinstance(load, Force):
+        if isinstance(load, Force) and isinstance(load.s, Signal):
+            forces += _moving_arrows(frames, refs, name, load, load.s)
+        elif isinstance(load, Force):
             end = _loaded(frames, load)
-            forces.append((name, end, scale * _components(frames, end, load.value, load.follower)))
+            forces.append(_arrow(frames, refs, name, end, scale * _components(frames, end, load.value, load.follower)))
         elif isinstance(load, DistributedForce):
             first, last = _ends(frames, load.cable)
             start, stop = (given if given is not None else end
                            for given, end in ((load.start, first), (load.stop, last)))
             for s in np.linspace(max(start, first), min(stop, last), DISTRIBUTED_ARROWS):
                 end = Attachment(on=load.cable, s=float(s))
-                distributed.append((name, end, scale * _components(frames, end, load.value, load.follower)))
-    yield from _arrows(frames, refs, longest, forces)
-    yield from _arrows(frames, refs, longest, distributed)
+                value = scale * _components(frames, end, load.value, load.follower)
+                distributed.append(_arrow(frames, refs, name, end, value))
+    yield from _arrows(longest, forces)
+    yield from _arrows(longest, distributed)
+
+
+def _moving_arrows(frames: Frames, refs: Frames, name: str, load: Force, s: Signal) -> Iterator[_Arrow]:
+    """Yield the axles of a load that moves along a cable, without length off its ends."""
+    cable, vectors = frames.scene.cables[load.on], f"{load.on}.nodal_vectors"
+    nodal = frames.value(vectors)
+    for offset, share in load.axles:
+        place_of = s.value(_load_time(frames)) + offset
+        here = (place_of >= 0) & (place_of <= cable.length)
+        at = np.clip(place_of, 0.0, cable.length)
+        value = np.array([load.value])
+        if load.follower:
+            value = _along_section(cable, load.value, partial(moving, cable, at, nodal))
+        yield _Arrow(name, moving(cable, at, nodal), moving(cable, at, refs.value(vectors)),
+                     share * here[:, None] * _scale(frames, load) * value)
 
 
 def _ends(frames: Frames, name: str) -> tuple[float, float]:
@@ -240,7 +274,8 @@ def _ends(frames: Frames, name: str) -> tuple[float, float]:
 
 def _flows(frames: Frames, refs: Frames, longest: float) -> Iterator[Segment]:
     """Yield velocities of fluids as arrows at the middle of cables and ropes and at the points of bodies with drag."""
-    scene, found = frames.scene, []
+    scene = frames.scene
+    found: list[_Arrow] = []
     up, time = scene.up, _load_time(frames)
     for name, drag in scene.drags.items():
         fluids = [fluid for fluid in scene.fluids_of(drag) if fluid.moves]
@@ -252,8 +287,9 @@ def _flows(frames: Frames, refs: Frames, longest: float) -> Iterator[Segment]:
         at = np.broadcast_to(place(frames, end), (len(time), 3))
         for fluid in fluids:
             is_there = (at @ up > fluid.bottom(scene.fluids.values())) & (at @ up <= fluid.top)
-            found.append((f"{fluid.given_name}, {name}", end, is_there[:, None] * fluid.velocity_at(time, at @ up, at)))
-    yield from _arrows(frames, refs, longest, found)
+            found.append(_arrow(frames, refs, f"{fluid.given_name}, {name}", end,
+                                is_there[:, None] * fluid.velocity_at(time, at @ up, at)))
+    yield from _arrows(longest, found)
 
 
 def _load_time(frames: Frames) -> np.ndarray:
@@ -270,10 +306,10 @@ def _loaded(frames: Frames, load: Force | Moment) -> Attachment:
     """Return the point of a load as an attachment."""
     on = frames.scene.bodies.get(load.on)
     if on is None:
-        return Attachment(on=load.on, s=load.s or 0.0)
+        return Attachment(on=load.on, s=load.s if isinstance(load.s, float) else 0.0)
     given = getattr(load, "at", None)
     if isinstance(on, ModalBody):
-        return Attachment(on=load.on, at=on.located(given, load.s))
+        return Attachment(on=load.on, at=on.located(given, load.s if isinstance(load.s, float) else None))
     return Attachment(on=load.on, at=(0.0, 0.0, 0.0) if given is None else given)
 
 
@@ -290,13 +326,20 @@ def _components(frames: Frames, end: Attachment, value: Vector, follower: bool) 
         return rotate(orientation, value)
     cable, nodal = frames.scene.cables[end.on], frames.value(f"{end.on}.nodal_vectors")
     s = np.array([end.arc_length])
-    tangent = _unit(along(cable, s, nodal, slope=0)[:, 0])
+    return _along_section(cable, value, lambda slope: along(cable, s, nodal, slope)[:, 0])
+
+
+def _along_section(cable: Cable, value: Vector, slope_of: Callable[[int], np.ndarray]) -> np.ndarray:
+    """Return the components (T or 1, 3) along the ground's axes of a force along the axes of a section of a cable, by
+    its slopes (T or 1, 3).
+    """
+    tangent = _unit(slope_of(0))
     if cable.dim == 2:
         return value[0] * tangent + value[1] * np.cross(cable.normal, tangent)
     if not cable.kind_of_element.director:
         return value[0] * tangent
     director = "xyz".index(cable.kind_of_element.director[-1])
-    width = _unit(np.cross(tangent, along(cable, s, nodal, slope=director)[:, 0]))
+    width = _unit(np.cross(tangent, slope_of(director)))
     return value[0] * tangent + value[1] * np.cross(width, tangent) + value[2] * width
 
 

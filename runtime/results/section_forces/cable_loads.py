@@ -21,8 +21,9 @@ from ...model.kinds import COUPLINGS
 from ...model.loads import GAUSS
 from ...model.model import CableModel, Model
 from ...model.states import attachment_points, element_coordinates, positions, spatial
-from ...parts.load import DistributedForce, Moment
+from ...parts.load import DistributedForce, Force, Moment
 from ...parts.scene_data import SceneData
+from ...parts.signal import Signal
 from ..shape_functions import of_slopes, on_axis
 from .spreads import AddedMass, Rule, Spread, rules_of
 
@@ -118,7 +119,10 @@ class CableLoads:
                 self._distributed(load, self.number[on], scale)
                 continue
             cable = self.model.cables[self.number[on]]
-            assert load.s is not None, f"{load.where} is not complete"
+            if isinstance(load, Force) and isinstance(load.s, Signal):
+                self._moving(load, load.s, self.number[on], scale)
+                continue
+            assert isinstance(load.s, float), f"{load.where} is not complete"
             element, x = cable.mesh.place(load.s)
             if isinstance(load, Moment):
                 component = np.array(load.value)[slice(2, 3) if self.dim == 2 else slice(0, 3)]
@@ -126,6 +130,16 @@ class CableLoads:
             else:
                 f = self._force(cable, element, x, np.array(load.value), load.follower)
             self._add(self.number[on], element, x, scale[:, None, None] * f)
+
+    def _moving(self, load: Force, s: Signal, number: int, scale: np.ndarray) -> None:
+        """Add the axles of a load that moves along a cable."""
+        cable, value = self.model.cables[number], np.array(load.value)
+        for offset, share in load.axles:
+            at = s.value(self.at.time) + offset
+            factor = share * scale * ((at >= 0) & (at <= cable.mesh.total))
+            element, x = cable.mesh.place(np.clip(at, 0.0, cable.mesh.total))
+            f = self._force(cable, element, x, value, load.follower)
+            self._add(number, element, x, factor[:, None, None] * f)
 
     def _turning(self, cable: CableModel, kernel: str, element: ArrayLike, x: ArrayLike, c: np.ndarray) -> np.ndarray:
         """Return the generalised force (T, vectors, dim) of a load that turns with the section."""
@@ -140,8 +154,8 @@ class CableLoads:
         if follower:
             components = cable.kernel("follower_force").shapes["c"][0]
             return self._turning(cable, "follower_force", element, x, value[:components])
-        f = np.outer(on_axis(cable, element, x)[0], value[: self.dim])
-        return np.broadcast_to(f, (self.times, *f.shape))
+        f = on_axis(cable, element, x)[0][..., None] * value[: self.dim]
+        return np.broadcast_to(f, (self.times, *f.shape[-2:]))
 
     def _distributed(self, load: DistributedForce, number: int, scale: np.ndarray) -> None:
         cable, value = self.model.cables[number], np.array(load.value)

@@ -87,7 +87,7 @@ def by_place(rest: Rest, part: Force | DistributedForce, path: Path) -> Change |
         mine for mine, drawn in zip(rest.scene.parts(), rest.scene.as_drawn.parts(), strict=True) if drawn is part))
     s = getattr(load, path.entries[0]) if path.entries[0] in ("s", "start", "stop") else None
     on = getattr(load, "cable", None) or getattr(load, "on", None)
-    if s is None or on not in rest.scene.cables or rest.reader.sections or load.follower:
+    if not isinstance(s, float) or on not in rest.scene.cables or rest.reader.sections or load.follower:
         return None
     N, at = rest.shape(on, s, derivative=int(path.entries[0] == "s"))
     value = float(load.scale.value(0.0)) * np.array(load.value)[: rest.model.dim]

@@ -262,7 +262,7 @@ def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine
         **_control(settings, scene, model),
         method=method,
         first_step=min(settings.output_step, 1e-3 * settings.duration),
-        breakpoints=breakpoints(model, settings.duration, tol, turns=settings.step is None),
+        breakpoints=breakpoints(model, settings.duration, tol, turns=settings.step is None, nodes=method.order > 2),
         capacity=capacity,
     )
     if status == "singular" and engine.self_locking >= 0:

@@ -51,11 +51,12 @@ typedef struct {
 extern const fu_coupling_type fu_dead_load_type;
 
 /* A load that rotates with its carrier, or whose lever does: at x of a cable's element, or at a point of a body; a
- * force at a material point of a rope is one on a body. */
-enum { FU_CABLE_FOLLOWER, FU_CABLE_MOMENT, FU_BODY_FORCE, FU_BODY_FOLLOWER, FU_BODY_MOMENT };
+ * force at a material point of a rope is one on a body. A load moves along its cable if the signal `place` gives its
+ * arc-length, less x; it acts where the signal `presence` (-1: one) is not zero. */
+enum { FU_CABLE_FOLLOWER, FU_CABLE_MOMENT, FU_BODY_FORCE, FU_BODY_FOLLOWER, FU_BODY_MOMENT, FU_CABLE_FORCE };
 typedef struct {
     fu_coupling base;
-    int kind, signal;
+    int kind, signal, place, presence;
     fu_attachment on;
     double x, c[3]; /* c: components, N or N m */
 } fu_load;

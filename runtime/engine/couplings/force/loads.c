@@ -4,6 +4,7 @@
 #include "couplings/common/attachments.h"
 #include "couplings/force/force.h"
 
+#include <math.h>
 #include <string.h>
 
 double fu_load_scale(const fu_model *model, int signal, double t)
@@ -11,17 +12,50 @@ double fu_load_scale(const fu_model *model, int signal, double t)
     return signal < 0 ? 1.0 : fu_signal_at(&model->signals[signal], t, 0, 0);
 }
 
-/* Computes the generalised force g of a load on an element at unit signal, and its derivative K by the element's dofs;
- * returns their number, and the first. */
-static int on_element(const fu_model *model, const fu_load *load, const double *q, double *g, double *K, int *first)
+/* Returns the factor of a load, zero of one that has left its cable. */
+static double factor_at(const fu_model *model, const fu_load *load, double t)
+{
+    const double present = fu_load_scale(model, load->presence, t);
+    return present != 0.0 ? present * fu_load_scale(model, load->signal, t) : 0.0;
+}
+
+/* Returns the element of a cable on which a load acts, and x there. */
+static int element_of(const fu_model *model, const fu_load *load, const fu_cable *cable, double t, double *x)
+{
+    *x = load->x;
+    if (load->place < 0) return load->on.element;
+    const double s = fu_signal_at(&model->signals[load->place], t, 0, 0) + load->x;
+    const double on = fmin(fmax(s, 0.0), fu_cable_length(cable));
+    const int element = fu_cable_element_at(cable, on);
+    *x = on - fu_cable_start(cable, element);
+    return element;
+}
+
+/* The generalised force g of a load on an element at unit signal, on n dofs from `first` on, and its derivative K by
+ * them. */
+typedef struct {
+    int n, first;
+    double g[FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
+} element_load;
+
+/* Computes the load on an element; the derivative is left out for a force of constant direction. */
+static void on_element(const fu_model *model, const fu_load *load, double t, const double *q, element_load *out)
 {
     const fu_cable *cable = &model->cables[load->on.cable];
-    double c[3];
+    double x, c[3];
+    const int element = element_of(model, load, cable, t, &x), dim = model->dim;
+    const double length = fu_element_length(cable, element);
     for (int d = 0; d < 3; ++d) c[d] = model->load_fraction * load->c[d];
-    *first = cable->first + load->on.element * cable->per_node;
-    (load->kind == FU_CABLE_MOMENT ? cable->kernel->moment : cable->kernel->follower_force)(
-        fu_element_length(cable, load->on.element), load->x, q + *first, c, g, K);
-    return cable->coordinates;
+    out->n = cable->coordinates;
+    out->first = cable->first + element * cable->per_node;
+    if (load->kind == FU_CABLE_FORCE) {
+        double N[FU_MAX_COORDINATES], N_x[FU_MAX_COORDINATES];
+        cable->kernel->on_axis(length, x, N, N_x);
+        for (int i = 0; i < out->n; ++i) out->g[i] = N[i / dim] * c[i % dim];
+        return;
+    }
+    (load->kind == FU_CABLE_MOMENT ? cable->kernel->moment : cable->kernel->follower_force)(length, x, q + out->first,
+                                                                                            c, out->g, out->K);
 }
 
 /* Computes the load on a body or on a point of a rope at unit signal: the attachment, a force `f` or a moment `m` in
@@ -69,12 +103,12 @@ const fu_coupling_type fu_dead_load_type = {
 static void rotating_force(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f)
 {
     const fu_load *load = (const fu_load *)coupling;
-    const double scale = fu_load_scale(model, load->signal, t);
+    const double scale = factor_at(model, load, t);
     if (load->on.cable >= 0) {
-        double g[FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
-        int first;
-        const int n = on_element(model, load, q, g, K, &first);
-        for (int i = 0; i < n; ++i) f[first + i] -= scale * g[i];
+        element_load of;
+        if (scale == 0.0) return;
+        on_element(model, load, t, q, &of);
+        for (int i = 0; i < of.n; ++i) f[of.first + i] -= scale * of.g[i];
         return;
     }
     const fu_state state = {.q = (double *)q, .v = (double *)model->zero};
@@ -88,15 +122,16 @@ static void rotating_force(const fu_model *model, const fu_coupling *coupling, d
 static void matrix(const fu_model *model, const fu_load *load, const fu_state *state, const double *psi,
                    double stiffness, fu_system *system)
 {
-    const double scale = stiffness * fu_load_scale(model, load->signal, state->t);
+    const double scale = stiffness * factor_at(model, load, state->t);
     const int dim = model->dim;
     if (load->on.cable >= 0) {
-        double g[FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
-        int first;
-        const int n = on_element(model, load, state->q, g, K, &first);
+        element_load on;
+        if (scale == 0.0 || load->kind == FU_CABLE_FORCE) return;
+        on_element(model, load, state->t, state->q, &on);
+        const int n = on.n, first = on.first;
         for (int i = 0; i < n; ++i)
             for (int j = 0; j < n; ++j)
-                if (K[i * n + j] != 0.0) fu_add(model, system, first + i, first + j, -scale * K[i * n + j]);
+                if (on.K[i * n + j] != 0.0) fu_add(model, system, first + i, first + j, -scale * on.K[i * n + j]);
         return;
     }
     body_load of;
@@ -126,10 +161,12 @@ static void step_tangent(const fu_model *model, const fu_coupling *coupling, con
     matrix(model, (const fu_load *)coupling, at->middle, 0, at->weights.stiffness, system);
 }
 
-static const char *const kinds[] = {"cable_follower", "cable_moment", "body_force", "body_follower", "body_moment", 0};
+static const char *const kinds[] = {
+    "cable_follower", "cable_moment", "body_force", "body_follower", "body_moment", "cable_force", 0};
 
 static const fu_field fields[] = {
     FU_FIELD(fu_load, kind, FU_WORD, kinds), FU_FIELD(fu_load, signal, FU_INTEGER, 0),
+    FU_FIELD(fu_load, place, FU_INTEGER, 0), FU_FIELD(fu_load, presence, FU_INTEGER, 0),
     FU_FIELD(fu_load, on, FU_ATTACHMENT, 0), FU_FIELD(fu_load, x, FU_REAL, 0),
     FU_FIELD_ARRAY(fu_load, c, FU_REAL),     {0},
 };
