@@ -15,6 +15,7 @@ from changing_loads import (
     deflection,
     speed_of,
     train_by_modes,
+    under_range,
 )
 from expectations import energy_error, largest, refused
 from funicular import Harmonic, Pulse, Ramp, Scene, TableSignal
@@ -138,6 +139,13 @@ def test_signals_of_any_form(signal):
     runs = [scene.run(0.3, output_step=0.01, integrator=name, tol=1e-6) for name in ("explicit", "radau")]
     assert largest(runs[0]["wire.nodal_vectors"] - runs[1]["wire.nodal_vectors"]) < 1e-5
     assert energy_error(runs[0]) < 1e-5
+
+
+@pytest.mark.parametrize(("start", "stop"), [(0.0, L / 2), (1.1, 4.3), (2.0, 2.01)])
+def test_a_line_load_over_a_range(start, stop):
+    """Its ends lie within elements; cubic elements are exact at nodes."""
+    found, exact = under_range(start, stop)
+    assert abs(found - exact) < 1e-8
 
 
 def test_at_rest_it_stands_where_it_starts():
