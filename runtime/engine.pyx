@@ -257,6 +257,17 @@ cdef class Engine(Report):
         run.event_work = self._zeros(self.model.n_dof + self.model.n_outputs)
         fu_proximity_place(&self.model, run.n_event_functions, self._memory(fu_proximity_size(&self.model, run.n_event_functions)))
 
+    def change_signals(self, model, breakpoints, bint restarts):
+        """Take the signals of a model, and breakpoints, once more; restarts: forces jump now, in a run, not in one that
+        is restored. Raises ArithmeticError where the equations are singular then.
+        """
+        cdef fu_breakpoint now
+        self._signals(model)
+        self._breakpoints(*breakpoints)
+        now.t, now.jumps = self.run.now.t, FU_ACCELERATION_JUMPS
+        if restarts and fu_pass_breakpoint(&self.run, &now, 1):
+            raise ArithmeticError("the equations are singular")
+
     def _breakpoints(self, times, jumps):
         """Set the instants at which steps end."""
         PyMem_Free(self.breakpoints)

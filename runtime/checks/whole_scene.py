@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..errors import SceneError
+from ..errors import SceneError, near
 from ..kernels.elements import built_in
 from ..parts.cable import Cable
 from ..parts.in_plane import turned_alone
@@ -53,6 +53,7 @@ def check_scene(scene: SceneData) -> None:
         raise SceneError("scene", "is empty: there is nothing to simulate", "add a cable or a rigid body")
     check_plane(scene)
     check_grips(scene)
+    _check_events(scene)
     for joint in scene.joints.values():
         check_joint(scene, joint)
     for body in scene.bodies.values():
@@ -63,6 +64,17 @@ def check_scene(scene: SceneData) -> None:
     for slide in scene.slides.values():
         if riders[slide.body] > 1 or slide.along in scene.ropes:
             check_on_cable(scene, slide)
+
+
+def _check_events(scene: SceneData) -> None:
+    """Raise SceneError for a load or for friction that begins with an event which is not there, or ends the run."""
+    waiting = [(load.where, load.when) for load in scene.loads.values()]
+    waiting += [(slide.where, slide.friction.when) for slide in scene.slides.values() if slide.friction is not None]
+    for where, name in waiting:
+        if name is not None and name not in scene.events:
+            raise SceneError(where, f'when: there is no event "{name}"', near(name, scene.events))
+        if name is not None and scene.events[name].action == "stop":
+            raise SceneError(where, f'when: event "{name}" ends the run', 'give it action="record"')
 
 
 def check_start_as_drawn(scene: SceneData) -> None:

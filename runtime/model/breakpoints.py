@@ -65,7 +65,7 @@ def driving_signals(model: Model) -> set[int]:
 def _of_moving_loads(model: Model, duration: float, nodes: bool) -> list[tuple[float, int]]:
     """Return the times at which moving loads come on their cables and leave them, and pass their nodes."""
     found = []
-    for load in model.of(LoadModel):
+    for load in (each for each in model.couplings if isinstance(each, LoadModel)):
         if load.presence >= 0:
             found += [(float(time), ACCELERATION) for time in model.signals[load.presence].breaks[1:-1]]
         if load.place >= 0 and nodes:

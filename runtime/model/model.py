@@ -32,7 +32,7 @@ from .point_forces import PointForceModel
 from .rope_model import RopeModel
 from .rope_wheels import DrumModel, SheaveModel
 from .ropes import SpanModel
-from .signals import SignalModel
+from .signals import Signals
 from .span_coordinates import AlongSpan, SpanCoordinates
 from .unknowns import Node
 
@@ -237,7 +237,7 @@ class Model:
     ropes: list[RopeModel]
     bodies: list[BodyModel]
     couplings: list[CouplingModel]
-    signals: list[SignalModel]
+    signals: Signals
     motions: list[MotionModel]
     q: np.ndarray
     v: np.ndarray

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from ..base.deferred import dataclass
-from ..parts.signal import DEGREE, Constant, Signal, Sine, times_at, value_at
+from ..parts.signal import DEGREE, Constant, Delayed, Signal, Sine, times_at, value_at
 
 
 @dataclass
@@ -34,16 +36,28 @@ class SignalModel:
 
 
 class Signals(list[SignalModel]):
-    """The signals of a model; couplings know them by their numbers."""
+    """The signals of a model; couplings know them by their numbers.
+
+    delayed: the numbers of signals that begin with an event, and the signals by the time since then, by its name.
+    """
+
+    def __init__(self, signals: Iterable[SignalModel] = ()):
+        super().__init__(signals)
+        self.delayed: dict[str, list[tuple[int, Signal]]] = {}
 
     def add(self, signal: Signal | None) -> int:
         """Store a signal and return its number, -1 for none."""
         if signal is None:
             return -1
-        breaks, coefficients = signal.pieces()
-        self.append(SignalModel(np.asarray(breaks, dtype=float), np.asarray(coefficients, dtype=float),
-                                *signal.sine))
+        self.append(_model(signal))
         return len(self) - 1
+
+    def begin(self, event: str, time: float) -> bool:
+        """Begin the signals that wait for an event, at a time in s; return whether there are any."""
+        waiting = self.delayed.pop(event, [])
+        for number, signal in waiting:
+            self[number] = _model(Delayed(signal=signal, begin=time))
+        return bool(waiting)
 
     def add_steps(self, times: np.ndarray, values: np.ndarray) -> int:
         """Store a signal that has each value from its time on and return its number, -1 for one that is always one."""
@@ -54,6 +68,15 @@ class Signals(list[SignalModel]):
         self.append(SignalModel(np.append(times, times[-1] + 1.0), coefficients, *Sine()))
         return len(self) - 1
 
-    def scale(self, signal: Signal) -> tuple[int, float]:
-        """Return the number and the constant factor of the scale of a load."""
+    def scale(self, signal: Signal, when: str | None = None) -> tuple[int, float]:
+        """Return the number and the constant factor of a scale; when: the name of the event that it begins with."""
+        if when is not None:
+            number = self.add(Delayed(signal=signal))
+            self.delayed.setdefault(when, []).append((number, signal))
+            return number, 1.0
         return (-1, float(signal.value(0.0))) if isinstance(signal, Constant) else (self.add(signal), 1.0)
+
+
+def _model(signal: Signal) -> SignalModel:
+    breaks, coefficients = signal.pieces()
+    return SignalModel(np.asarray(breaks, dtype=float), np.asarray(coefficients, dtype=float), *signal.sine)

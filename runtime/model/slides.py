@@ -19,6 +19,7 @@ from .bodies import BODIES
 from .coupling import CouplingKind
 from .model import SlideModel
 from .ropes import items_beside
+from .signals import Signals
 from .span_coordinates import KERNELS
 
 RESISTANCES = {2: "planar_resistance", 3: "resistance"}
@@ -85,15 +86,19 @@ def _slide(slide: Slide, builder: ModelBuilder) -> SlideModel:
         element=line.elements[-1 if forward else 0], resistance=RESISTANCES[dim] * resists,
         n_coordinates=1, scale=[mass] * dim, n_multipliers=dim - 1 + may_be_locked,
         needs_reactions=resists, is_damped=resists, drive=builder.signals.add(slide.prescribed),
-        entries={"carries_director": dim == 3 and not line.has_director} | _friction(friction) | _stops(ends))
+        entries={"carries_director": dim == 3 and not line.has_director} | _friction(friction, builder.signals)
+        | _stops(ends))
 
 
-def _friction(friction: Friction | None) -> dict[str, Any]:
+def _friction(friction: Friction | None, signals: Signals) -> dict[str, Any]:
     """Return the fields of friction; without it the velocity is not zero, as the kernels divide by it."""
     if friction is None:
-        return {"sticks": False, "friction": 0.0, "static_friction": 0.0, "viscous": 0.0, "velocity": 1.0}
-    return {"sticks": friction.sticks, "friction": friction.sliding, "static_friction": friction.static_friction,
-            "viscous": friction.viscous, "velocity": friction.velocity}
+        return {"sticks": False, "friction": 0.0, "static_friction": 0.0, "viscous": 0.0, "velocity": 1.0,
+                "friction_scale": -1}
+    number, factor = signals.scale(friction.scale, friction.when)
+    return {"sticks": friction.sticks, "friction": factor * friction.sliding,
+            "static_friction": factor * friction.static_friction, "viscous": factor * friction.viscous,
+            "velocity": friction.velocity, "friction_scale": number}
 
 
 def _stops(ends: Sequence[str | Stop]) -> dict[str, Any]:

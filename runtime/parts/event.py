@@ -1,6 +1,6 @@
 """Events: instants at which a quantity passes a value, or a function changes sign."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Annotated, Any
 
 from pydantic import model_validator
@@ -20,6 +20,15 @@ def _text(value: Any) -> str | None:
     if value is not None and not isinstance(value, str):
         raise ValueError(f'must be text such as "A.position.y", got {shown(value)}')
     return value
+
+
+def first_times(happened: Iterable[Mapping[str, Any]]) -> dict[str, float]:
+    """Return the first times of a scene's events in s by name; happened: the events of a run's report."""
+    found: dict[str, float] = {}
+    for each in happened:
+        if "what" not in each:  # of a part
+            found.setdefault(each["name"], each["time"])
+    return found
 
 
 class Event(Part):

@@ -1,13 +1,14 @@
 """Friction of slides, contacts, crossings and ropes: Coulomb friction, of slides also viscous and rolling friction."""
 
 from numbers import Real
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 from pydantic import BeforeValidator, model_validator
 
 from .part import Part
 from .schemas import GivenAs, number_schema
-from .validation import not_negative, one_of, positive, show, shown
+from .signal import ONE, AnySignal, check_delayed
+from .validation import Name, not_negative, one_of, positive, show, shown
 
 
 class Friction(Part):
@@ -26,6 +27,8 @@ class Friction(Part):
     model: "regularised": the force rises smoothly with the speed and permits creep at rest; "stick": it holds at rest.
         By default contacts of cables and bodies with surfaces stick, others are regularised
     velocity: of "regularised", at which the force is 0.7 of its limit, m/s
+    scale: factor of all coefficients over time, a signal, of slides alone: a brake
+    when: of slides alone, name of the event that friction begins with; ``scale`` counts its time from there
     """
 
     coefficient: Annotated[float, not_negative()] = 0.0
@@ -34,6 +37,15 @@ class Friction(Part):
     rolling: Annotated[float, not_negative()] = 0.0
     model: Annotated[str, one_of(("regularised", "stick"))] | None = None
     velocity: Annotated[float, positive("m/s")] = 1e-3
+    scale: AnySignal = ONE
+    when: Name | None = None
+
+    @model_validator(mode="after")
+    def _can_begin(self) -> Self:
+        check_delayed(self.scale, self.when)
+        if min(self.scale.pieces()[1][:, 0].min() - abs(self.scale.sine.amplitude), 0.0) < 0:
+            raise ValueError("scale must not be negative", "friction opposes the motion")
+        return self
 
     @model_validator(mode="after")
     def _sticks_at_least_as_it_slides(self) -> "Friction":
@@ -64,6 +76,8 @@ class Friction(Part):
 
     def check_coulomb(self) -> None:
         """Raise ValueError unless it is Coulomb friction, the friction of contacts and crossings."""
+        if self.scale != ONE or self.when is not None:
+            raise ValueError("changes with time, which only the friction of slides does", "leave scale and when out")
         for name in ("viscous", "rolling"):
             if getattr(self, name):
                 raise ValueError(f"has {name} friction, which only slides have", f"leave {name} out")

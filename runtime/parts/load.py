@@ -1,13 +1,14 @@
 """Loads: forces, distributed forces and moments, each a value times a signal of time."""
 
 from collections.abc import Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
+import numpy as np
 from pydantic import model_validator
 
 from .part import Part
 from .schemas import Check, Place, checked, number_schema
-from .signal import ONE, SIGNALS, AnySignal, Signal, signal
+from .signal import ONE, SIGNALS, AnySignal, Delayed, Signal, check_delayed, signal
 from .validation import Flag, Name, Reference, Vector, list_of, number, place_on, show, xyz
 
 
@@ -28,11 +29,24 @@ class Load(Part):
     """Base of the loads: ``value`` (3,) times the signal ``scale``.
 
     scale: factor over time, a signal
+    when: name of the event that it begins with, the first time it happens; ``scale`` counts its time from there
     """
 
     group = "loads"
     name: Name | None = None
     scale: AnySignal = ONE
+    when: Name | None = None
+
+    def factor(self, time: np.ndarray, happened: Mapping[str, float]) -> np.ndarray:
+        """Return the factor at times in s; happened: the first times of events, s."""
+        if self.when is None:
+            return self.scale.value(time)
+        return Delayed(signal=self.scale, begin=happened.get(self.when)).value(time)
+
+    @model_validator(mode="after")
+    def _can_begin(self) -> Self:
+        check_delayed(self.scale, self.when)
+        return self
 
 
 class Force(Load):

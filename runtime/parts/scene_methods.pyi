@@ -209,6 +209,7 @@ class SceneMethods(SceneData):
         *,
         value: Numbers,
         scale: Scale = 1.0,
+        when: str | None = None,
         s: Scale | None = None,
         offsets: Numbers = (0.0,),
         shares: Numbers | None = None,
@@ -224,6 +225,7 @@ class SceneMethods(SceneData):
         *,
         value: Numbers,
         scale: Scale = 1.0,
+        when: str | None = None,
         start: float | None = None,
         stop: float | None = None,
         follower: bool = False,
@@ -237,6 +239,7 @@ class SceneMethods(SceneData):
         *,
         value: Numbers,
         scale: Scale = 1.0,
+        when: str | None = None,
         s: float | None = None,
         name: str | None = None,
     ) -> Moment:

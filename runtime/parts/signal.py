@@ -150,6 +150,12 @@ def _check_apart(times: Iterable[float]) -> None:
                              f"{one!r} s and {other!r} s")
 
 
+def check_delayed(scale: "Signal", when: str | None) -> None:
+    """Raise ValueError for the scale of what begins with an event, if it is a sine, which has no begin."""
+    if when is not None and scale.sine.amplitude:
+        raise ValueError("scale is a sine, which cannot begin with an event", "take a TableSignal of its values")
+
+
 class Constant(Signal):
     """A ``constant`` value, in a scene a plain number."""
 
@@ -342,6 +348,28 @@ class Integral(Signal):
         """Return the integral of the sine of the rate: a quarter of a period late."""
         amplitude, w, phase = self.rate.sine
         return Sine(amplitude / w if amplitude else 0.0, w, phase - pi / 2)
+
+
+class Delayed(Signal):
+    """Zero until the time ``begin``, s, and from there ``signal`` by the time since then; None: always zero; only in
+    code.
+    """
+
+    form = "delayed"
+    signal: Signal
+    begin: float | None = None
+
+    def pieces(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return its polynomials between breaks, see `Signal.pieces`."""
+        if self.begin is None:
+            return Constant(constant=0.0).pieces()
+        breaks, coefficients = self.signal.pieces()
+        first = int(np.clip(np.searchsorted(breaks, 0.0, side="right") - 1, 0, len(coefficients) - 1))
+        at_begin = _shifted(coefficients[first : first + 1], -breaks[first : first + 1])
+        later = breaks[first + 1 : -1]
+        last = max(later[-1] if len(later) else 0.0, 0.0) + 1.0
+        return (self.begin + np.array([-1.0, 0.0, *later, last]),
+                np.concatenate([np.zeros((1, DEGREE + 1)), at_begin, coefficients[first + 1 :]]))
 
 
 class CombinedSignal(Signal):

@@ -3,13 +3,15 @@
     python tests/benchmarks/changing_loads.py [--out FILE.csv]
 
 A force F crosses a simply supported beam at the constant speed v, α = v L/π sqrt(ρA/EI) (case M1); deflections of its
-middle are over F L³/48EI. A train of three axles crosses it and leaves it.
+middle are over F L³/48EI. A train of three axles crosses it and leaves it. A brake decelerates a slide until it
+sticks.
 """
 
 from __future__ import annotations
 
 import numpy as np
-from funicular import Material, Rectangle, Run, Scene, TableSignal
+from funicular import Friction, Material, Ramp, Rectangle, Run, Scene, TableSignal
+from funicular.parts.signal import Integral
 from table import arguments, few, show
 
 L, DEPTH = 10.0, 0.1
@@ -23,6 +25,9 @@ PUBLISHED = {0.1: 1.0964535, 0.25: 1.2576098, 0.5: 1.7054452, 0.617: 1.7316740, 
 INTEGRATORS = "genalpha", "radau", "explicit", "energy", "linear"
 TRAIN = {"offsets": (0.0, -3.0, -5.0), "shares": (1.0, 0.5, 2.0)}
 MODES = np.arange(1, 400)
+SPEED, COEFFICIENT, CLOSING = 3.0, 0.2, Ramp(start=0.2, end=1.2)
+BRAKING = "genalpha", "radau", "explicit"
+"""Integrators that take friction."""
 
 
 def beam(element: str = "cable8p", elements: int = 16) -> Scene:
@@ -115,11 +120,51 @@ def of_range() -> dict:
             "reference": exact, "error": abs(found - exact), "steps": 0}
 
 
+def rail(friction: Friction) -> Scene:
+    """Return a mass of 2 kg at 3 m/s that slides along a rail clamped at every node, from s = 0.5 m."""
+    scene = Scene()
+    wire = scene.cable("rail", start=(0, 0, 0), end=(L, 0, 0), elements=8, element="cable12", material=STEEL,
+                       section=Rectangle(height=DEPTH, width=DEPTH))
+    for s in wire.node_s:
+        scene.clamp(wire, s=s, fix="all")
+    scene.rigid_body("car", mass=2.0, inertia=(1, 1, 1), position=(0.5, 0, 0), velocity=(SPEED, 0, 0))
+    scene.slide("car", along="rail", s=0.5, name="wheels", friction=friction)
+    return scene
+
+
+def braked(by: str, model: str = "stick") -> Scene:
+    """Return the rail with a brake that closes by a signal, or when the slide passes s = 2 m."""
+    how = {"when": "mark"} if by == "event" else {"scale": CLOSING}
+    scene = rail(Friction(coefficient=COEFFICIENT, model=model, velocity=1e-5, **how))
+    scene.event("mark", quantity="wheels.s", value=2.0, direction="rising")
+    return scene
+
+
+def braked_speed(by: str, time: np.ndarray) -> np.ndarray:
+    """Return the speed (T,) in closed form: the weight presses, v = v0 - μ g times the integral of the scale."""
+    if by == "event":
+        closed = np.maximum(time - 1.5 / SPEED, 0)
+    else:
+        closed = Integral(rate=CLOSING).value(time)
+    return np.maximum(SPEED - COEFFICIENT * 9.81 * closed, 0)
+
+
+def of_brake(by: str, integrator: str) -> dict:
+    """Return the row of a brake that decelerates a slide until it sticks."""
+    run = braked(by).run(2.4, output_step=0.01, integrator=integrator, tol=1e-6)
+    found, exact = run["wheels.s_rate"], braked_speed(by, run.time)
+    at = np.argmax(np.abs(found - exact))
+    return {"case": f"brake by {'an event' if by == 'event' else 'a signal'}", "integrator": integrator,
+            "quantity": "speed, m/s", "found": float(found[at]), "reference": float(exact[at]),
+            "error": float(abs(found[at] - exact[at])), "steps": run.report["steps"]}
+
+
 def main() -> None:
     """Measure and print."""
     options = arguments(__doc__)
     cases = [lambda i, a=alpha: of_force(a, i) for alpha in PUBLISHED] + [lambda i: of_train(0.25, i)]
     rows = [case(integrator) for case in few(cases) for integrator in few(INTEGRATORS)]
+    rows += [of_brake(by, each) for by in few(("signal", "event")) for each in few(BRAKING)]
     show([*rows, of_range()], options.out)
 
 

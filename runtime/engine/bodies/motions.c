@@ -29,6 +29,11 @@ double fu_signal_at(const fu_signal *signal, double t, double *rate, double *sec
     return f;
 }
 
+double fu_scale_at(const fu_model *model, int signal, double t)
+{
+    return signal < 0 ? 1.0 : fu_signal_at(&model->signals[signal], t, 0, 0);
+}
+
 /* Returns whether a motion moves its dof, so that the support's force has a power. */
 int fu_supports_move(const fu_model *model, const fu_state *state)
 {

@@ -28,6 +28,8 @@ typedef struct {
 } fu_motion;
 
 double fu_signal_at(const fu_signal *signal, double t, double *rate, double *second);
+/* Returns the value of a signal that scales forces, by its number; 1 for -1. */
+double fu_scale_at(const fu_model *model, int signal, double t);
 int fu_supports_move(const fu_model *model, const fu_state *state);
 void fu_prescribe(const fu_model *model, fu_state *state);
 

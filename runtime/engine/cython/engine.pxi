@@ -367,6 +367,8 @@ cdef extern from * nogil:
         double *K[2][2]
     void fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, fu_joint_derivatives *out)
     int fu_start(fu_run *run)
+    int FU_ACCELERATION_JUMPS
+    int fu_pass_breakpoint(fu_run *run, const fu_breakpoint *breakpoint, int event)
     int fu_advance(fu_run *run, double seconds)
     void fu_pause(fu_run *run)
     int fu_has_worked(const fu_run *run)

@@ -247,7 +247,7 @@ cdef class Translation(Arrays):
             (<int *>to)[0] = k
         return 0
 
-    def _signals_and_motions(self, model):
+    def _signals(self, model):
         cdef int i
         for i, signal in enumerate(model.signals):
             g = &self.signals[i]
@@ -256,6 +256,10 @@ cdef class Translation(Arrays):
                 raise ValueError(f"a signal's pieces need {FU_SIGNAL_TERMS} coefficients")
             g.breaks, g.coefficients = self._doubles(signal.breaks), self._doubles(signal.coefficients)
             g.amplitude, g.angular_frequency, g.phase = signal.amplitude, signal.angular_frequency, signal.phase
+
+    def _signals_and_motions(self, model):
+        cdef int i
+        self._signals(model)
         moved = set()
         for i, motion in enumerate(model.motions):
             o = &self.motions[i]

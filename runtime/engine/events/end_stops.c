@@ -58,7 +58,8 @@ static double excess(const fu_run *run, const fu_state *state, int j, double *pu
     }
     /* friction does not carry the effect of moments along the cable */
     if (by_eq38 && fu_ties_a_frame(model, j)) along = traction;
-    const double most = slide->static_friction * sqrt(normal);
+    const double scale = fu_scale_at(model, slide->friction_scale, state->t);
+    const double most = scale * slide->static_friction * sqrt(normal);
     if (side && !is_hard(model, j, side)) /* the force of the buffer */
         along += side * slide->stops[side > 0].stiffness * fu_compression(model, state, j, side) * sqrt(square);
     *pull = along;

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -29,7 +29,8 @@ class Frames:
 
     time (T,) in s, or another parameter; value: results (T, ...) by their names in a run; has: whether there is a
     result of a name; reference: results at one instant, without the time, the origin of displacements; load (T,): the
-    applied part of the loads; moves: whether loads follow their signals over time.
+    applied part of the loads; moves: whether loads follow their signals over time; happened: the first times of
+    events, s.
     """
 
     scene: SceneData
@@ -40,6 +41,7 @@ class Frames:
     load: np.ndarray
     section_forces: SectionForces = no_forces
     moves: bool = False
+    happened: Mapping[str, float] = field(default_factory=dict)
 
     def __len__(self) -> int:
         """Return the number of instants."""

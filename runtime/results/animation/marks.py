@@ -299,7 +299,7 @@ def _load_time(frames: Frames) -> np.ndarray:
 
 def _scale(frames: Frames, load: Load) -> np.ndarray:
     """Return the factors (T, 1) of a load."""
-    return np.asarray(frames.load * load.scale.value(_load_time(frames)))[:, None]
+    return np.asarray(frames.load * load.factor(_load_time(frames), frames.happened))[:, None]
 
 
 def _loaded(frames: Frames, load: Force | Moment) -> Attachment:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...base.rotations import product, rotate, turned_by
 from ...model.cables import arrays_of
+from ...parts.event import first_times
 from ...parts.modal_body import ModalBody
 from ...parts.rigid_body import RigidBody
 from ...parts.scene_data import SceneData
@@ -84,7 +85,7 @@ def of_run(run: Recorded, numbers: np.ndarray) -> Frames:
         return forces_of_run(run, cable, s[None], numbers)
 
     return Frames(run.scene, run.time[numbers], value, run.__contains__, drawn(run.scene).__getitem__,
-                  np.ones(len(numbers)), forces, moves=True)
+                  np.ones(len(numbers)), forces, moves=True, happened=first_times(run.report.get("events", ())))
 
 
 def of_states(states: Sequence[RestState]) -> Frames:

@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -36,7 +36,7 @@ class Instants:
     """A scene at T instants: q (T, n_q) and v (T, n_dof) of the cables, zero of bodies; value(name): a result (T, ...).
 
     load, weight: the applied parts of the loads and of gravity; is_rest: whether it is a state of rest; start(name): a
-    result (1, ...) at the start of a run by the linear model about it.
+    result (1, ...) at the start of a run by the linear model about it; happened: the first times of events, s.
     """
 
     time: np.ndarray
@@ -47,12 +47,13 @@ class Instants:
     weight: float = 1.0
     is_rest: bool = False
     start: Callable[[str], np.ndarray] | None = None
+    happened: Mapping[str, float] = field(default_factory=dict)
 
     def one(self, k: int) -> Instants:
         """Return instant number k alone."""
         here = slice(k, k + 1)
         return Instants(self.time[here], self.q[here], self.v[here], lambda name: self.value(name)[here], self.load,
-                        self.weight, self.is_rest, self.start)
+                        self.weight, self.is_rest, self.start, self.happened)
 
 
 class PointLoad(NamedTuple):
@@ -114,7 +115,7 @@ class CableLoads:
             on = load.cable if isinstance(load, DistributedForce) else load.on
             if on not in self.number:
                 continue
-            scale = self.at.load * load.scale.value(self.at.time)
+            scale = self.at.load * load.factor(self.at.time, self.at.happened)
             if isinstance(load, DistributedForce):
                 self._distributed(load, self.number[on], scale)
                 continue

@@ -14,6 +14,7 @@ from ...integrators import INTEGRATORS
 from ...kernels.libraries import kernels_of
 from ...model.model import Model
 from ...parts.cable import Cable
+from ...parts.event import first_times
 from ...parts.in_plane import in_plane
 from ...parts.locations import attached
 from ...parts.scene_data import SceneData
@@ -142,7 +143,7 @@ def _instants(run: Recorded, numbers: np.ndarray) -> Instants:
         for into, kind in ((q, "nodal_vectors"), (v, "nodal_velocity")):
             into[:, cable.coordinates] = value(f"{cable.name}.{kind}")[..., : model.dim].reshape(len(numbers), -1)
     start = partial(at_start, run) if of_linear_model(run) else None
-    return Instants(run.time[chosen], q, v, value, start=start)
+    return Instants(run.time[chosen], q, v, value, start=start, happened=first_times(run.report.get("events", ())))
 
 
 def of_linear_model(run: Recorded) -> bool:

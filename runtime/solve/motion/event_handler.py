@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import insort
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -113,6 +113,7 @@ class EventHandler:
         self.model = model
         self.event_functions = [EventFunction(event, scene, model) for event in scene.events.values()]
         self.happened: list[dict[str, Any]] = []
+        self.change_signals: Callable[[bool], None] | None = None  # that begin with an event, see `begin`
         self.stopped_by: str | None = None
 
     def call(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> float:
@@ -187,4 +188,16 @@ class EventHandler:
         self._note({"name": event.name, "time": time, "state": at})
         if event.action == "stop":
             self.stopped_by = f'event "{event.name}"'
-        return event.action != "stop"
+            return False
+        self.begin(event.where, {event.name or "": time}, restarts=True)
+        return True
+
+    def begin(self, where: str, events: Mapping[str, float], *, restarts: bool) -> None:
+        """Begin loads and friction that wait for events, which have happened at these times in s; restarts: now."""
+        begun = [self.model.signals.begin(name, time) for name, time in events.items()]
+        if any(begun) and self.change_signals is not None:
+            try:
+                self.change_signals(restarts)
+            except ArithmeticError as error:
+                raise SceneError(where, f"{error} with the loads and the friction that begin with it",
+                                 "look at coefficients of friction") from None

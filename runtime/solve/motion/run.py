@@ -25,6 +25,7 @@ from ...model.controlled import controlled_weights, counted_weights
 from ...model.initial_state import InitialState
 from ...model.model import Model
 from ...model.redundant_constraints import drop_redundant_rows
+from ...parts.event import first_times
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
 from ..linear.threads import share_elements
@@ -238,11 +239,20 @@ def _begun(scene: SceneData, settings: RunSettings, ready: _Prepared, method: In
     """Start a prepared run, with its stream; on_trial: it may begin anew with another method."""
     model, engine, event_handler, _ = ready
     status, gaps, change = _start(scene, settings, model, engine, method, None if stream is None else blocks.capacity)
+    event_handler.change_signals = lambda restarts: engine.change_signals(
+        model, _breakpoints(model, settings, method), restarts)
     row_notes = RowNotes(scene, model, settings.step_taken or 0.0, settings.duration)
     if stream is not None and status is None:
         stream.start(model, engine, blocks, event_handler.happened, row_notes, on_trial)
+        event_handler.begin("scene", first_times(event_handler.happened), restarts=False)
     observer = LongRun(model, engine, settings, event_handler, progress)
     return _Begun(model, engine, event_handler, status, gaps, change, observer, row_notes, clock.wall)
+
+
+def _breakpoints(model: Model, settings: RunSettings, method: Integrator) -> tuple[np.ndarray, np.ndarray]:
+    """Return the instants at which steps of a run end, see `breakpoints`."""
+    return breakpoints(model, settings.duration, tol_of(settings, method), turns=settings.step is None,
+                       nodes=method.order > 2)
 
 
 def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine, method: Integrator,
@@ -262,7 +272,7 @@ def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine
         **_control(settings, scene, model),
         method=method,
         first_step=min(settings.output_step, 1e-3 * settings.duration),
-        breakpoints=breakpoints(model, settings.duration, tol, turns=settings.step is None, nodes=method.order > 2),
+        breakpoints=_breakpoints(model, settings, method),
         capacity=capacity,
     )
     if status == "singular" and engine.self_locking >= 0:

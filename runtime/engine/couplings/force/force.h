@@ -72,8 +72,6 @@ typedef struct {
 } fu_line_load;
 extern const fu_coupling_type fu_line_load_type;
 
-/* Returns the value of a load's signal, 1 without one. */
-double fu_load_scale(const fu_model *model, int signal, double t);
 void fu_external_forces(const fu_model *model, double t, const double *q, double *f);
 
 #endif

@@ -19,7 +19,7 @@ static const fu_line_load *load_of(const fu_coupling *coupling)
 /* Computes the force of a length, N/m. */
 static void force_of_length(const fu_model *model, const fu_line_load *load, double t, double F[3])
 {
-    const double scale = fu_load_scale(model, load->signal, t) * model->load_fraction;
+    const double scale = fu_scale_at(model, load->signal, t) * model->load_fraction;
     for (int d = 0; d < 3; ++d) F[d] = scale * load->value[d];
 }
 

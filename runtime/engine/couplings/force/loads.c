@@ -7,16 +7,11 @@
 #include <math.h>
 #include <string.h>
 
-double fu_load_scale(const fu_model *model, int signal, double t)
-{
-    return signal < 0 ? 1.0 : fu_signal_at(&model->signals[signal], t, 0, 0);
-}
-
 /* Returns the factor of a load, zero of one that has left its cable. */
 static double factor_at(const fu_model *model, const fu_load *load, double t)
 {
-    const double present = fu_load_scale(model, load->presence, t);
-    return present != 0.0 ? present * fu_load_scale(model, load->signal, t) : 0.0;
+    const double present = fu_scale_at(model, load->presence, t);
+    return present != 0.0 ? present * fu_scale_at(model, load->signal, t) : 0.0;
 }
 
 /* Returns the element of a cable on which a load acts, and x there. */
@@ -83,7 +78,7 @@ static void on_body(const fu_model *model, const fu_load *load, const fu_state *
 static void dead_force(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f)
 {
     const fu_dead_load *load = (const fu_dead_load *)coupling;
-    const double scale = fu_load_scale(model, load->signal, t);
+    const double scale = fu_scale_at(model, load->signal, t);
     (void)q;
     for (int i = 0; i < load->n; ++i) f[load->dofs[i]] -= scale * (model->load_fraction * load->values[i]);
 }

@@ -60,8 +60,9 @@ void fu_resistance_at(const fu_model *model, const fu_state *state, int j, const
     const fu_slide *slide = &model->slides[j];
     const fu_end_stop *stop = compressed(model, state, j);
     const int side = fu_slide_flags_of(model, state, j)->contact;
-    const double friction[5] = {slide->friction, slide->viscous, slide->velocity, direction_of(model, state, j),
-                                MIN_NORMAL_FORCE};
+    const double scale = fu_scale_at(model, slide->friction_scale, state->t);
+    const double friction[5] = {scale * slide->friction, scale * slide->viscous, slide->velocity,
+                                direction_of(model, state, j), MIN_NORMAL_FORCE};
     const double buffer[4] = {stop ? stop->stiffness : 0.0, stop ? stop->damping : 0.0,
                               stop ? fu_compression(model, state, j, side) : 0.0, side};
     double by_x;
@@ -249,5 +250,6 @@ double fu_resistance_friction_error(const fu_model *model, const fu_coupling *co
         for (int d = 0; d < 2; ++d) mean[d] += weights[k] * normal[d];
         all += weights[k] * hypot(normal[0], normal[1]);
     }
-    return square * slide->friction * (all - hypot(mean[0], mean[1])) / coupling->scale[0];
+    return square * fu_scale_at(model, slide->friction_scale, state->t) * slide->friction *
+           (all - hypot(mean[0], mean[1])) / coupling->scale[0];
 }

@@ -297,6 +297,7 @@ static const fu_field fields[] = {
     FU_FIELD(fu_slide, static_friction, FU_REAL, 0),
     FU_FIELD(fu_slide, viscous, FU_REAL, 0),
     FU_FIELD(fu_slide, velocity, FU_REAL, 0),
+    FU_FIELD(fu_slide, friction_scale, FU_INTEGER, 0),
     OF_STOPS("stop_kinds", kind, FU_WORD, fu_end_stop_kinds),
     OF_STOPS("restitutions", restitution, FU_REAL, 0),
     OF_STOPS("buffer_lengths", length, FU_REAL, 0),

@@ -45,6 +45,7 @@ struct fu_slide {
     const fu_resistance_kernels *resistance; /* null without friction and buffers */
     int sticks;                              /* friction holds it at rest, else friction rises with the speed */
     double friction, static_friction, viscous, velocity; /* coefficients sliding and at rest; N s/m; m/s */
+    int friction_scale;                                  /* signal of a factor of the former three, -1 */
     fu_end_stop stops[2];                                /* at the start and at the end */
     /* of the state in the initial configuration, as the next members */
     double start_s, director[FU_SPACE];
