@@ -53,7 +53,7 @@ class Force(Load):
     """A force at a point of a cable, of a rope or of a body, or forces that move along a cable.
 
     On a rope it acts on a material point in a span, see `Rope`. Where ``s`` is a signal it moves: off the ends of the
-    cable nothing acts, as of a train on a bridge.
+    cable nothing acts, as of a train on a bridge; its work is that on the material under it.
 
     on: the cable, the rope or the body
     value: components of the force, N
