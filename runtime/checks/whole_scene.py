@@ -10,7 +10,9 @@ import numpy as np
 from ..errors import SceneError, near
 from ..kernels.elements import built_in
 from ..parts.cable import Cable
+from ..parts.friction import Friction
 from ..parts.in_plane import turned_alone
+from ..parts.load import Load
 from ..parts.modal_body import ModalBody
 from ..parts.part import Part
 from ..parts.plane import aligned, called
@@ -67,14 +69,15 @@ def check_scene(scene: SceneData) -> None:
 
 
 def _check_events(scene: SceneData) -> None:
-    """Raise SceneError for a load or for friction that begins with an event which is not there, or ends the run."""
-    waiting = [(load.where, load.when) for load in scene.loads.values()]
-    waiting += [(slide.where, slide.friction.when) for slide in scene.slides.values() if slide.friction is not None]
-    for where, name in waiting:
-        if name is not None and name not in scene.events:
-            raise SceneError(where, f'when: there is no event "{name}"', near(name, scene.events))
-        if name is not None and scene.events[name].action == "stop":
-            raise SceneError(where, f'when: event "{name}" ends the run', 'give it action="record"')
+    """Raise SceneError for loads and friction that begin or end with an event which is not there, or ends the run."""
+    waiting: list[tuple[str, Load | Friction]] = [(load.where, load) for load in scene.loads.values()]
+    waiting += [(slide.where, slide.friction) for slide in scene.slides.values() if slide.friction is not None]
+    for where, part in waiting:
+        for keyword, name in (("when", part.when), ("until", part.until)):
+            if name is not None and name not in scene.events:
+                raise SceneError(where, f'{keyword}: there is no event "{name}"', near(name, scene.events))
+            if name is not None and scene.events[name].action == "stop":
+                raise SceneError(where, f'{keyword}: event "{name}" ends the run', 'give it action="record"')
 
 
 def check_start_as_drawn(scene: SceneData) -> None:

@@ -85,7 +85,7 @@ class LoadBuilder:
 
     def load(self, load: Force | DistributedForce | Moment) -> None:
         """Add the model of a load to `dead`, `turning` or `along`."""
-        number, factor = self.builder.signals.scale(load.scale, load.when)
+        number, factor = self.builder.signals.scale(load.scale, load.when, load.until)
         value = factor * np.array(load.value)
         if isinstance(load, DistributedForce):
             self._distributed(load, number, value)

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from ..base.deferred import dataclass
-from ..parts.signal import DEGREE, Constant, Delayed, Signal, Sine, times_at, value_at
+from ..parts.signal import DEGREE, Constant, Signal, Sine, switched, times_at, value_at
 
 
 @dataclass
@@ -38,12 +38,14 @@ class SignalModel:
 class Signals(list[SignalModel]):
     """The signals of a model; couplings know them by their numbers.
 
-    delayed: the numbers of signals that begin with an event, and the signals by the time since then, by its name.
+    switched: the numbers of signals that begin or end with events, the signals, and the names of both events;
+    happened: the first times of events, s.
     """
 
     def __init__(self, signals: Iterable[SignalModel] = ()):
         super().__init__(signals)
-        self.delayed: dict[str, list[tuple[int, Signal]]] = {}
+        self.switched: list[tuple[int, Signal, str | None, str | None]] = []
+        self.happened: dict[str, float] = {}
 
     def add(self, signal: Signal | None) -> int:
         """Store a signal and return its number, -1 for none."""
@@ -52,11 +54,14 @@ class Signals(list[SignalModel]):
         self.append(_model(signal))
         return len(self) - 1
 
-    def begin(self, event: str, time: float) -> bool:
-        """Begin the signals that wait for an event, at a time in s; return whether there are any."""
-        waiting = self.delayed.pop(event, [])
-        for number, signal in waiting:
-            self[number] = _model(Delayed(signal=signal, begin=time))
+    def switch(self, event: str, time: float) -> bool:
+        """Begin and end signals at the first time of an event, s; return whether there are any."""
+        if event in self.happened:
+            return False
+        self.happened[event] = time
+        waiting = [each for each in self.switched if event in each[2:]]
+        for number, signal, when, until in waiting:
+            self[number] = _model(switched(signal, when, until, self.happened))
         return bool(waiting)
 
     def add_steps(self, times: np.ndarray, values: np.ndarray) -> int:
@@ -68,11 +73,13 @@ class Signals(list[SignalModel]):
         self.append(SignalModel(np.append(times, times[-1] + 1.0), coefficients, *Sine()))
         return len(self) - 1
 
-    def scale(self, signal: Signal, when: str | None = None) -> tuple[int, float]:
-        """Return the number and the constant factor of a scale; when: the name of the event that it begins with."""
-        if when is not None:
-            number = self.add(Delayed(signal=signal))
-            self.delayed.setdefault(when, []).append((number, signal))
+    def scale(self, signal: Signal, when: str | None = None, until: str | None = None) -> tuple[int, float]:
+        """Return the number and the constant factor of a scale; when, until: names of events that it begins and ends
+        with.
+        """
+        if when is not None or until is not None:
+            number = self.add(switched(signal, when, until, {}))
+            self.switched.append((number, signal, when, until))
             return number, 1.0
         return (-1, float(signal.value(0.0))) if isinstance(signal, Constant) else (self.add(signal), 1.0)
 

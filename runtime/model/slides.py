@@ -95,7 +95,7 @@ def _friction(friction: Friction | None, signals: Signals) -> dict[str, Any]:
     if friction is None:
         return {"sticks": False, "friction": 0.0, "static_friction": 0.0, "viscous": 0.0, "velocity": 1.0,
                 "friction_scale": -1}
-    number, factor = signals.scale(friction.scale, friction.when)
+    number, factor = signals.scale(friction.scale, friction.when, friction.until)
     return {"sticks": friction.sticks, "friction": factor * friction.sliding,
             "static_friction": factor * friction.static_friction, "viscous": factor * friction.viscous,
             "velocity": friction.velocity, "friction_scale": number}

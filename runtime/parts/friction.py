@@ -7,7 +7,7 @@ from pydantic import BeforeValidator, model_validator
 
 from .part import Part
 from .schemas import GivenAs, number_schema
-from .signal import ONE, AnySignal, check_delayed
+from .signal import ONE, AnySignal, check_switched
 from .validation import Name, not_negative, one_of, positive, show, shown
 
 
@@ -28,7 +28,8 @@ class Friction(Part):
         By default contacts of cables and bodies with surfaces stick, others are regularised
     velocity: of "regularised", at which the force is 0.7 of its limit, m/s
     scale: factor of all coefficients over time, a signal, of slides alone: a brake
-    when: of slides alone, name of the event that friction begins with; ``scale`` counts its time from there
+    when, until: of slides alone, names of the events that friction begins and ends with; ``scale`` counts its time from
+        the first one
     """
 
     coefficient: Annotated[float, not_negative()] = 0.0
@@ -39,10 +40,11 @@ class Friction(Part):
     velocity: Annotated[float, positive("m/s")] = 1e-3
     scale: AnySignal = ONE
     when: Name | None = None
+    until: Name | None = None
 
     @model_validator(mode="after")
-    def _can_begin(self) -> Self:
-        check_delayed(self.scale, self.when)
+    def _can_be_switched(self) -> Self:
+        check_switched(self.scale, self.when, self.until)
         if min(self.scale.pieces()[1][:, 0].min() - abs(self.scale.sine.amplitude), 0.0) < 0:
             raise ValueError("scale must not be negative", "friction opposes the motion")
         return self
@@ -76,8 +78,9 @@ class Friction(Part):
 
     def check_coulomb(self) -> None:
         """Raise ValueError unless it is Coulomb friction, the friction of contacts and crossings."""
-        if self.scale != ONE or self.when is not None:
-            raise ValueError("changes with time, which only the friction of slides does", "leave scale and when out")
+        if self.scale != ONE or self.when is not None or self.until is not None:
+            raise ValueError("changes with time, which only the friction of slides does",
+                             "leave scale, when and until out")
         for name in ("viscous", "rolling"):
             if getattr(self, name):
                 raise ValueError(f"has {name} friction, which only slides have", f"leave {name} out")

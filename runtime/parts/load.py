@@ -8,7 +8,7 @@ from pydantic import model_validator
 
 from .part import Part
 from .schemas import Check, Place, checked, number_schema
-from .signal import ONE, SIGNALS, AnySignal, Delayed, Signal, check_delayed, signal
+from .signal import ONE, SIGNALS, AnySignal, Signal, check_switched, signal, switched
 from .validation import Flag, Name, Reference, Vector, list_of, number, place_on, show, xyz
 
 
@@ -30,22 +30,22 @@ class Load(Part):
 
     scale: factor over time, a signal
     when: name of the event that it begins with, the first time it happens; ``scale`` counts its time from there
+    until: name of the event that it ends with, the first time it happens
     """
 
     group = "loads"
     name: Name | None = None
     scale: AnySignal = ONE
     when: Name | None = None
+    until: Name | None = None
 
     def factor(self, time: np.ndarray, happened: Mapping[str, float]) -> np.ndarray:
         """Return the factor at times in s; happened: the first times of events, s."""
-        if self.when is None:
-            return self.scale.value(time)
-        return Delayed(signal=self.scale, begin=happened.get(self.when)).value(time)
+        return switched(self.scale, self.when, self.until, happened).value(time)
 
     @model_validator(mode="after")
-    def _can_begin(self) -> Self:
-        check_delayed(self.scale, self.when)
+    def _can_be_switched(self) -> Self:
+        check_switched(self.scale, self.when, self.until)
         return self
 
 

@@ -210,6 +210,7 @@ class SceneMethods(SceneData):
         value: Numbers,
         scale: Scale = 1.0,
         when: str | None = None,
+        until: str | None = None,
         s: Scale | None = None,
         offsets: Numbers = (0.0,),
         shares: Numbers | None = None,
@@ -226,6 +227,7 @@ class SceneMethods(SceneData):
         value: Numbers,
         scale: Scale = 1.0,
         when: str | None = None,
+        until: str | None = None,
         start: float | None = None,
         stop: float | None = None,
         follower: bool = False,
@@ -240,6 +242,7 @@ class SceneMethods(SceneData):
         value: Numbers,
         scale: Scale = 1.0,
         when: str | None = None,
+        until: str | None = None,
         s: float | None = None,
         name: str | None = None,
     ) -> Moment:

@@ -7,7 +7,7 @@ A further form is one class with ``pieces`` and one entry in `SIGNALS`.
 
 import cmath
 import itertools
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import comb, pi
 from numbers import Real
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Self
@@ -150,10 +150,11 @@ def _check_apart(times: Iterable[float]) -> None:
                              f"{one!r} s and {other!r} s")
 
 
-def check_delayed(scale: "Signal", when: str | None) -> None:
-    """Raise ValueError for the scale of what begins with an event, if it is a sine, which has no begin."""
-    if when is not None and scale.sine.amplitude:
-        raise ValueError("scale is a sine, which cannot begin with an event", "take a TableSignal of its values")
+def check_switched(scale: "Signal", when: str | None, until: str | None) -> None:
+    """Raise ValueError for the scale of what begins or ends with an event, if it is a sine, which has no ends."""
+    if (when is not None or until is not None) and scale.sine.amplitude:
+        raise ValueError("scale is a sine, which cannot begin or end with an event",
+                         "take a TableSignal of its values")
 
 
 class Constant(Signal):
@@ -350,26 +351,42 @@ class Integral(Signal):
         return Sine(amplitude / w if amplitude else 0.0, w, phase - pi / 2)
 
 
-class Delayed(Signal):
-    """Zero until the time ``begin``, s, and from there ``signal`` by the time since then; None: always zero; only in
-    code.
+class Switched(Signal):
+    """Zero until the time ``begin``, s, from there ``signal`` by the time since then, and zero again from ``end`` on;
+    begin None: always zero; -inf: ``signal`` by the time itself; end None: without an end; only in code.
     """
 
-    form = "delayed"
+    form = "switched"
     signal: Signal
     begin: float | None = None
+    end: float | None = None
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
         """Return its polynomials between breaks, see `Signal.pieces`."""
-        if self.begin is None:
+        if self.begin is None or (self.end is not None and self.end <= self.begin):
             return Constant(constant=0.0).pieces()
         breaks, coefficients = self.signal.pieces()
-        first = int(np.clip(np.searchsorted(breaks, 0.0, side="right") - 1, 0, len(coefficients) - 1))
-        at_begin = _shifted(coefficients[first : first + 1], -breaks[first : first + 1])
-        later = breaks[first + 1 : -1]
-        last = max(later[-1] if len(later) else 0.0, 0.0) + 1.0
-        return (self.begin + np.array([-1.0, 0.0, *later, last]),
-                np.concatenate([np.zeros((1, DEGREE + 1)), at_begin, coefficients[first + 1 :]]))
+        if self.begin != -np.inf:
+            first = int(np.clip(np.searchsorted(breaks, 0.0, side="right") - 1, 0, len(coefficients) - 1))
+            at_begin = _shifted(coefficients[first : first + 1], -breaks[first : first + 1])
+            later = breaks[first + 1 : -1]
+            breaks = self.begin + np.array([-1.0, 0.0, *later, max([0.0, *later]) + 1.0])
+            coefficients = np.concatenate([np.zeros((1, DEGREE + 1)), at_begin, coefficients[first + 1 :]])
+        if self.end is not None:
+            kept = max(int(np.searchsorted(breaks[:-1], self.end, side="left")), 1)
+            first = min(breaks[0], self.end - 1.0)
+            coefficients = np.concatenate([_shifted(coefficients[:1], np.array([first - breaks[0]])),
+                                           coefficients[1:kept], np.zeros((1, DEGREE + 1))])
+            breaks = np.array([first, *breaks[1:kept], self.end, self.end + 1.0])
+        return breaks, coefficients
+
+
+def switched(signal: Signal, when: str | None, until: str | None, happened: Mapping[str, float]) -> Signal:
+    """Return a signal that begins and ends with events; happened: the first times of events, s."""
+    if when is None and until is None:
+        return signal
+    return Switched(signal=signal, begin=-np.inf if when is None else happened.get(when),
+                    end=None if until is None else happened.get(until))
 
 
 class CombinedSignal(Signal):

@@ -18,6 +18,7 @@ from changing_loads import (
 )
 from expectations import energy_error, largest, refused
 from funicular import Friction, Harmonic, Pulse, Ramp, Scene, TableSignal
+from funicular.parts.signal import Switched
 from interrupted_runs import check_file_and_resume
 from shared_scenes import add_cable
 
@@ -69,6 +70,43 @@ def test_a_force_on_a_beam_that_begins_with_an_event(integrator):
     assert 0.1 * time < begin < 0.9 * time
     assert largest(deflection(run) - by_modes(0.5, run.time) - added) < 2e-3
     assert energy_error(run) < 1e-4
+
+
+@pytest.mark.parametrize("integrator", EVERY)
+def test_forces_that_end_with_an_event(integrator):
+    """One acts from the start, one between two events, one ends before it begins."""
+    scene = Scene(gravity=(0, 0, 0))
+    scene.rigid_body("A", mass=2.0, inertia=(1, 1, 1), velocity=(1, 0, 0), position=(0, 0, 0))
+    for name, x in (("first", 0.25), ("second", 0.75)):
+        scene.event(name, quantity="A.position.x", value=x, direction="rising")
+    rise = TableSignal(time=[0, 1], value=[0, 2], interpolation="linear")
+    scene.force("A", value=(0, 4, 0), scale=rise, until="second")
+    scene.force("A", value=(0, 0, 4), scale=rise, when="first", until="second")
+    scene.force("A", value=(0, 9, 0), when="second", until="first")
+    run = scene.run(1.0, output_step=0.05, integrator=integrator, tol=1e-6)
+    np.testing.assert_allclose(run["A.velocity"][:, 1], 2 * np.clip(run.time, 0, 0.75) ** 2, atol=1e-5)
+    np.testing.assert_allclose(run["A.velocity"][:, 2], 2 * np.clip(run.time - 0.25, 0, 0.5) ** 2, atol=1e-5)
+    assert energy_error(run) < 1e-5
+
+
+def test_a_brake_that_an_event_opens():
+    """It closes at s = 2 m and opens at 2.5 m."""
+    scene = rail(Friction(coefficient=0.2, model="stick", when="closes", until="opens"))
+    for name, s in (("closes", 2.0), ("opens", 2.5)):
+        scene.event(name, quantity="wheels.s", value=s, direction="rising")
+    run = scene.run(1.5, output_step=0.05, integrator="radau", tol=1e-6)
+    assert abs(run["wheels.s_rate"][-1] - np.sqrt(9 - 2 * 0.2 * 9.81 * 0.5)) < 1e-6
+
+
+@pytest.mark.parametrize(("begin", "end"), [(None, None), (2.0, None), (2.0, 4.3), (-np.inf, 4.3), (2.0, 1.0),
+                                            (-np.inf, -5.0), (3.0, 3.1)])
+def test_a_switched_signal(begin, end):
+    signal = TableSignal(time=[-1.5, 0.5, 1.0, 2.5], value=[1.0, 3.0, -1.0, 2.0])
+    found, t = Switched(signal=signal, begin=begin, end=end), np.linspace(-8, 8, 1601) + 1e-5
+    inside = np.zeros(len(t), dtype=bool) if begin is None else (t >= begin) & (t < (np.inf if end is None else end))
+    since = t - (begin if begin is not None and np.isfinite(begin) else 0.0)
+    np.testing.assert_allclose(found.value(t), np.where(inside, signal.value(since), 0.0), atol=1e-12)
+    assert (np.diff(found.pieces()[0]) > 0).all()
 
 
 def test_section_forces_and_arrows_begin_with_the_event():
@@ -147,7 +185,8 @@ def test_a_resumed_run_with_a_brake(tmp_path, by):
 
 def test_what_is_refused():
     scene = pushed()
-    with refused('force "f": scale is a sine, which cannot begin with an event; take a TableSignal of its values'):
+    with refused('force "f": scale is a sine, which cannot begin or end with an event; take a TableSignal of its '
+                 "values"):
         scene.force("A", value=(1, 0, 0), when="gate", scale=Harmonic(amplitude=1, frequency=1), name="f")
     scene.force("A", value=(1, 0, 0), when="gat", name="f")
     with refused('force "f": when: there is no event "gat"; did you mean "gate"?'):

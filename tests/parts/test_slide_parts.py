@@ -163,7 +163,7 @@ VERTICAL = {"body": "B", "along": "link", "s": 0.5}
     ({"friction": "rough"}, "friction must be a coefficient, a Friction or a table of its values, got 'rough'"),
     ({"friction": {"coefficient": -0.3}}, "friction.coefficient must not be negative, got -0.3"),
     ({"friction": {"mu": 0.3}}, 'friction "mu" is not known here; known: coefficient, static_coefficient, viscous, '
-     "rolling, model, velocity, scale, when"),
+     "rolling, model, velocity, scale, when, until"),
     ({"at_end": "leav"}, 'at_end "leav" is not known; did you mean "leave"?'),
     ({"at_end": 3}, "at_end must be a word or a stop such as HardStop(restitution=0.5), got 3; words: error, leave"),
     ({"at_end": {"stop": "bufer"}}, 'at_end has the unknown stop "bufer"; did you mean "buffer"?'),

@@ -113,7 +113,7 @@ class EventHandler:
         self.model = model
         self.event_functions = [EventFunction(event, scene, model) for event in scene.events.values()]
         self.happened: list[dict[str, Any]] = []
-        self.change_signals: Callable[[bool], None] | None = None  # that begin with an event, see `begin`
+        self.change_signals: Callable[[bool], None] | None = None  # by events, see `switch`
         self.stopped_by: str | None = None
 
     def call(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> float:
@@ -189,15 +189,15 @@ class EventHandler:
         if event.action == "stop":
             self.stopped_by = f'event "{event.name}"'
             return False
-        self.begin(event.where, {event.name or "": time}, restarts=True)
+        self.switch(event.where, {event.name or "": time}, restarts=True)
         return True
 
-    def begin(self, where: str, events: Mapping[str, float], *, restarts: bool) -> None:
-        """Begin loads and friction that wait for events, which have happened at these times in s; restarts: now."""
-        begun = [self.model.signals.begin(name, time) for name, time in events.items()]
-        if any(begun) and self.change_signals is not None:
+    def switch(self, where: str, events: Mapping[str, float], *, restarts: bool) -> None:
+        """Begin and end loads and friction with events, which have happened at these times in s; restarts: now."""
+        changed = [self.model.signals.switch(name, time) for name, time in events.items()]
+        if any(changed) and self.change_signals is not None:
             try:
                 self.change_signals(restarts)
             except ArithmeticError as error:
-                raise SceneError(where, f"{error} with the loads and the friction that begin with it",
+                raise SceneError(where, f"{error} with the loads and the friction from there on",
                                  "look at coefficients of friction") from None

@@ -244,7 +244,7 @@ def _begun(scene: SceneData, settings: RunSettings, ready: _Prepared, method: In
     row_notes = RowNotes(scene, model, settings.step_taken or 0.0, settings.duration)
     if stream is not None and status is None:
         stream.start(model, engine, blocks, event_handler.happened, row_notes, on_trial)
-        event_handler.begin("scene", first_times(event_handler.happened), restarts=False)
+        event_handler.switch("scene", first_times(event_handler.happened), restarts=False)
     observer = LongRun(model, engine, settings, event_handler, progress)
     return _Begun(model, engine, event_handler, status, gaps, change, observer, row_notes, clock.wall)
 
