@@ -98,6 +98,22 @@ def test_a_brake_that_an_event_opens():
     assert abs(run["wheels.s_rate"][-1] - np.sqrt(9 - 2 * 0.2 * 9.81 * 0.5)) < 1e-6
 
 
+@pytest.mark.parametrize("integrator", BRAKING)
+def test_a_rider_that_stands_breaks_loose_where_its_brake_opens(integrator):
+    scene = Scene()
+    wire = add_cable(scene, start=(0, 0, 0), end=(4, 3, 0), pins=(), elements=2)
+    for s in wire.node_s:
+        scene.clamp(wire, s=s, fix="all")
+    scene.rigid_body("A", mass=1.0, inertia=(1, 1, 1), position=(3.2, 2.4, 0))
+    scene.rigid_body("B", mass=1.0, inertia=(1, 1, 1), position=(0, 9, 0), velocity=(1, 0, 0))
+    scene.slide("A", along=wire, s=4.0, name="brake", friction=Friction(coefficient=1.0, model="stick", until="gate"))
+    scene.event("gate", quantity="B.position.x", value=0.25, direction="rising")
+    run = scene.run(0.6, output_step=0.05, integrator=integrator, tol=1e-6)
+    _, loose = run.report["events"]
+    assert loose["what"] == "broke loose" and abs(loose["time"] - 0.25) < 1e-9
+    np.testing.assert_allclose(run["brake.s_rate"], -9.81 * 0.6 * np.clip(run.time - 0.25, 0, None), atol=1e-9)
+
+
 @pytest.mark.parametrize(("begin", "end"), [(None, None), (2.0, None), (2.0, 4.3), (-np.inf, 4.3), (2.0, 1.0),
                                             (-np.inf, -5.0), (3.0, 3.1)])
 def test_a_switched_signal(begin, end):
