@@ -22,6 +22,7 @@ from .parts.force_segments import ForceTable as ForceTable
 from .parts.friction import Friction as Friction
 from .parts.listed import *  # noqa: F403  the kinds of parts
 from .parts.material import Material as Material
+from .parts.piece import Piece as Piece
 from .parts.polar import Polar as Polar
 from .parts.rope_items import Anchor as Anchor
 from .parts.rope_items import Block as Block

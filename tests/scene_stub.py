@@ -19,6 +19,7 @@ from funicular.parts.friction import Friction
 from funicular.parts.kinds import KINDS
 from funicular.parts.material import Material
 from funicular.parts.part import Part
+from funicular.parts.piece import Piece
 from funicular.parts.polar import Polar
 from funicular.parts.rope_items import Anchor, Block, Drum, Sheave
 from funicular.parts.scene_data import SceneData
@@ -53,8 +54,8 @@ def signature(kind: type[Part]) -> Signature: ...
 class SceneMethods(SceneData):
 '''
 
-OTHERS = (Anchor, Block, Drum, Sheave, Stop, ForceTable, Friction, Material, SceneData, Section, Signal, Solid, Polar,
-          Profile, VelocityTable, Part)
+OTHERS = (Anchor, Block, Drum, Sheave, Stop, ForceTable, Friction, Material, Piece, SceneData, Section, Signal, Solid,
+          Polar, Profile, VelocityTable, Part)
 """What signatures need beside the kinds of parts."""
 
 TYPES = {
@@ -67,6 +68,7 @@ TYPES = {
     "ForceTable": "ForceTable | dict[str, Numbers]",
     "Displacement": "Sequence[Scale | str | None]", "Rotation": "tuple[Numbers, Scale]",
     "Listed": "Named | Sequence[Named]", "Route": "Sequence[Anchor | Block | Drum | Sheave | dict[str, Any]]",
+    "Pieces": "Sequence[Piece | dict[str, Any]]",
     "ElementsOfSpans": "int | Sequence[int]", "LengthOfSpans": "float | Sequence[float]",
     "Name": "str", "Count": "int", "Flag": "bool", "Exponent": "float",
     "Material": "Material", "AnyFriction": "Friction | float",

@@ -172,7 +172,8 @@ def _of_cable(scene: SceneData, contact: Contact, cable: Cable) -> Contact:
                          "leave restitution out and give stiffness, in N/m a length")
     if contact.points is not None:
         raise SceneError(contact.where, f'acts along cable "{cable.name}" and takes no points', "leave points out")
-    radius = outer_radius_of(cable.section) if contact.radius is None else contact.radius
+    radii = {outer_radius_of(piece.section) for piece in cable.uniform_pieces}
+    radius = (radii.pop() if len(radii) == 1 else None) if contact.radius is None else contact.radius
     if radius is None:
         raise SceneError(contact.where, "radius is missing, which does not follow from the section of the cable",
                          "give radius, in m: the distance of the surface from the axis at contact")
@@ -227,7 +228,8 @@ def _of_body(scene: SceneData, contact: Contact, body: RigidBody | ModalBody, su
 def _weight(scene: SceneData, contact: Contact) -> float:
     """Return the weight of a cable or a rope per length, N/m, or of a body, N."""
     line = scene.line(contact.a)
-    mass = scene.bodies[contact.a].mass if line is None else line.material.density * line.section.area
+    mass = scene.bodies[contact.a].mass if line is None else max(
+        piece.material.density * piece.section.area for piece in line.uniform_pieces)
     return mass * float(np.linalg.norm(scene.gravity))
 
 
@@ -336,7 +338,8 @@ def radius_of(scene: SceneData, contact: Contact) -> float:
     """Return the radius of a contact, m, 0 where it is negligible beside the section of the cable."""
     assert contact.radius is not None, f"{contact.where} is not complete"
     line = scene.line(contact.a)
-    least = 0.0 if line is None else MIN_CONTACT_RADIUS * float(np.sqrt(line.section.moments()[0] / np.pi))
+    least = 0.0 if line is None else MIN_CONTACT_RADIUS * float(np.sqrt(
+        min(piece.section.area for piece in line.uniform_pieces) / np.pi))
     return contact.radius if contact.radius > least else 0.0
 
 

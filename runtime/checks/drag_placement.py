@@ -16,7 +16,7 @@ from ..parts.scene_data import SceneData
 from ..parts.validation import LENGTH_TOLERANCE, show
 from ..parts.velocity_table import VelocityTable
 from .frames import draws_section
-from .placement import check_has_mass, placed_attachment
+from .placement import check_has_mass, node_at, placed_attachment
 
 PLACES = 65
 """Number of points of a cable that are checked."""
@@ -126,6 +126,11 @@ def _check_cable(scene: SceneData, drag: Drag) -> None:
     """Raise SceneError for a drag that its cable does not admit."""
     _refuse(drag, "cable")
     cable = scene.cables[drag.on]
+    for name in ("start", "stop"):
+        if (s := getattr(drag, name)) is not None:
+            node_at(scene, drag.on, drag.where, s, name)
+    if drag.start is not None and drag.stop is not None and not drag.start < drag.stop:
+        raise SceneError(drag.where, f"stop must be beyond start {show(drag.start, 'm')}, got {show(drag.stop, 'm')}")
     _check_added_mass_of_line(drag, cable)
     _check_alone(scene, drag, cable)
     if drag.lift != 0 and cable.dim == 2:
@@ -151,21 +156,29 @@ def _check_rope(scene: SceneData, drag: Drag, rope: Rope) -> None:
 
 
 def _check_alone(scene: SceneData, drag: Drag, line: Cable | Rope) -> None:
-    """Raise SceneError where a cable or a rope has another drag in the same fluid."""
-    if other := next((each for each in scene.drags.values() if each.on == drag.on
+    """Raise SceneError where a cable or a rope has another drag in the same fluid, and on the same elements."""
+    if other := next((each for each in scene.drags.values() if each.on == drag.on and _overlap(each, drag)
                       and (None in (each.fluid, drag.fluid) or each.fluid == drag.fluid
                            or not _are_apart(scene, each, drag))), None):
-        raise SceneError(drag.where, f'{line.where} has the {other.where} already', "leave one of them out")
+        raise SceneError(drag.where, f'{line.where} has the {other.where} already', "leave one of them out"
+                         + ", or give them start and stop" * isinstance(line, Cable))
+
+
+def _overlap(one: Drag, other: Drag) -> bool:
+    """Return whether the parts of a cable that two drags act on overlap."""
+    ends = [(0.0 if drag.start is None else drag.start, np.inf if drag.stop is None else drag.stop)
+            for drag in (one, other)]
+    return max(start for start, _ in ends) < min(stop for _, stop in ends)
 
 
 def _check_acts(drag: Drag, line: Cable | Rope) -> None:
     """Raise SceneError for a drag without an effect on a cable or a rope, or without a diameter."""
     if drag.normal == 0 and drag.tangential == 0 and drag.lift == 0 and drag.polar is None:
-        if drag.displaced(line) == 0:
+        if drag.displaced(line.uniform_pieces[0].section) == 0:
             raise SceneError(drag.where, "has neither drag nor buoyancy", "give normal, tangential or displaced_area")
         return
     try:
-        drag.width(line)
+        drag.stretches(line)
     except ValueError as error:
         raise SceneError(drag.where, str(error), "give diameter, in m: the width across the flow") from None
 
@@ -238,7 +251,7 @@ def _check_added_mass(drag: Drag, displaced: float, name: str) -> None:
 
 def _check_added_mass_of_line(drag: Drag, line: Cable | Rope) -> None:
     """Raise SceneError for added mass that a cable or a rope does not take."""
-    _check_added_mass(drag, drag.displaced(line), "displaced_area, in m²")
+    _check_added_mass(drag, drag.displaced(line.uniform_pieces[0].section), "displaced_area, in m²")
     if isinstance(drag.added_mass, tuple):
         raise SceneError(drag.where, f"acts on {line.where}, whose added_mass is one number",
                          "give that across the axis, and added_mass_tangential along it")

@@ -55,7 +55,8 @@ def _gravity(scene: SceneData) -> Iterator[str]:
 def _materials(scene: SceneData) -> Iterator[str]:
     parts: list[Cable | Rope] = [*scene.cables.values(), *scene.ropes.values()]
     for part in parts:
-        yield from (f"{part.where}: {note}" for note in _material(part.material))
+        materials = list(dict.fromkeys(piece.material for piece in part.uniform_pieces))
+        yield from (f"{part.where}: {note}" for material in materials for note in _material(material))
 
 
 def _material(material: Material) -> Iterator[str]:

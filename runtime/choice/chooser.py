@@ -260,7 +260,7 @@ class Chooser(Generic[S]):
         groups: dict[Key, list[str]] = {}
         for each in self.free:
             if each.fixed is None:
-                alike = each.base, each.cable.length, each.cable.section, each.cable.material
+                alike = each.base, each.cable.length, each.cable.uniform_pieces
                 groups.setdefault(alike, []).append(each.cable.name)
         shares = dict.fromkeys(self.kinds, 0.0)
         level = levels[-2] if len(levels) > 2 else levels[-1]

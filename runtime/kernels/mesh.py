@@ -40,6 +40,16 @@ class Mesh:
         return self.given is None
 
     @property
+    def n_nodes(self) -> int:
+        """Return the number of its nodes."""
+        return self.n_elements + 1
+
+    @property
+    def boundaries(self) -> np.ndarray:
+        """Return (elements + 1,): arc-lengths of the ends of the elements, in m."""
+        return self.node_s
+
+    @property
     def total(self) -> float:
         """Return the length of the cable, in m."""
         return float(self.lengths[0] * self.n_elements if self.given is None else self.given[-1])

@@ -159,7 +159,8 @@ class ModelBuilder:
         """Return an attachment with the frame of the section, or that of the tangent and the director or up."""
         cable, index = self.scene.cables[name], self.cable_index[name]
         length = self.cables[index].mesh.mean
-        mass = cable.material.density * cable.section.area * length
+        piece = cable.piece_at(s)
+        mass = piece.material.density * piece.section.area * length
         director = cable.kind_of_element.director
         if up is None and not director:  # any direction: only the tangent is held
             up = cable.height(s)

@@ -11,7 +11,7 @@ from ..kernels.libraries import kernels_of
 from ..parts.cable import Cable
 from ..parts.scene_data import SceneData
 from .constants import constants
-from .model import CableModel
+from .model import CableModel, CablePiece
 from .unknowns import Reduction, as_supports_leave
 
 MAX_SLOPE_DIFFERENCE = 0.01
@@ -30,19 +30,20 @@ class CableArrays:
 
     def model(self, first: int) -> CableModel:
         """Return its model, whose coordinates begin at ``first``."""
-        cable = self.cable
-        vectors, material = cable.kind_of_element.nodal_vectors, cable.material
-        return CableModel(
-            cable.name, cable.element, cable.kernel_law, cable.mesh, first, material.damping_time,
-            material.mass_damping, self._mass, self._constants, (cable.elements + 1, len(vectors), cable.dim),
-            vectors, cable.library)
+        cable, mesh = self.cable, self.cable.mesh
+        vectors = cable.kind_of_element.nodal_vectors
+        pieces = tuple(CablePiece(piece.end, piece.material.damping_time, piece.material.mass_damping)
+                       for piece in cable.uniform_pieces)
+        return CableModel(cable.name, cable.element, cable.kernel_law, mesh, first, pieces, self._mass, self._constants,
+                          (mesh.n_nodes, len(vectors), cable.dim), vectors, cable.library)
 
     @cached_property
     def _mass(self) -> np.ndarray:
         """Return m of a `CableModel`."""
         cable = self.cable
-        mass, moments = getattr(kernels_of(cable.library), f"{cable.element}_mass"), cable.section.mass_moments()
-        return _fixed(np.array([mass(length, cable.material.density, moments) for length in cable.mesh.lengths]))
+        mass = getattr(kernels_of(cable.library), f"{cable.element}_mass")
+        return _fixed(np.array([mass(length, piece.material.density, piece.section.mass_moments())
+                                for piece, lengths in cable.lengths_by_piece() for length in lengths]))
 
     @cached_property
     def _constants(self) -> np.ndarray:
@@ -59,14 +60,13 @@ class CableArrays:
         """Return the displacement of a point by a unit of each nodal vector: 1 for positions, lengths for slopes, those
         of the longer element at the node.
         """
-        cable = self.cable
-        area, iyy, izz = cable.section.moments()[:3]
-        across, lengths = np.sqrt([iyy / area, izz / area]), cable.mesh.lengths
-        vectors = cable.kind_of_element.nodal_vectors
-        if len(lengths) == 1:
-            return _fixed(np.repeat(np.tile(list(gauge(vectors, lengths[0], *across)), cable.elements + 1), cable.dim))
-        longer = np.maximum(np.append(lengths[0], lengths), np.append(lengths, lengths[-1]))
-        return _fixed(np.repeat([unit for length in longer for unit in gauge(vectors, length, *across)], cable.dim))
+        cable, vectors = self.cable, self.cable.kind_of_element.nodal_vectors
+        units = np.array([list(gauge(vectors, length, *np.sqrt(piece.section.moments()[1:3] / piece.section.area)))
+                          for piece, lengths in cable.lengths_by_piece() for length in lengths])
+        if len(units) == 1:
+            return _fixed(np.repeat(np.tile(units[0], cable.mesh.n_nodes), cable.dim))
+        longer = np.maximum(np.vstack([units[:1], units]), np.vstack([units, units[-1:]]))
+        return _fixed(np.repeat(longer, cable.dim))
 
     def gravity(self, gravity: np.ndarray) -> np.ndarray:
         """Return (coordinates,): its generalised gravity."""
@@ -95,11 +95,11 @@ kept_arrays = lru_cache(maxsize=KEPT_CABLES)(CableArrays)
 
 def cable_gravity(cable: Cable, gravity: np.ndarray) -> np.ndarray:
     """Return (coordinates,): generalised gravity of a cable."""
-    kernel, moments = getattr(kernels_of(cable.library), f"{cable.element}_gravity"), cable.section.mass_moments()
+    kernel = getattr(kernels_of(cable.library), f"{cable.element}_gravity")
     vectors = len(cable.kind_of_element.nodal_vectors)
-    each = np.array([kernel(length, cable.material.density, moments, gravity).reshape(2, vectors, cable.dim)
-                     for length in cable.mesh.lengths])
-    weight = np.zeros((cable.elements + 1, vectors, cable.dim))
+    each = np.array([kernel(length, piece.material.density, piece.section.mass_moments(), gravity).reshape(
+                     2, vectors, cable.dim) for piece, lengths in cable.lengths_by_piece() for length in lengths])
+    weight = np.zeros((cable.mesh.n_nodes, vectors, cable.dim))
     weight[:-1] += each[:, 0]
     weight[1:] += each[:, 1]
     return weight.ravel()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -18,21 +19,26 @@ PLANAR = 4
 """Elastic constants of a planar continuum; a spatial one has nine."""
 
 
-def constants(cable: Cable, axial: float = 1.0, S: np.ndarray | None = None) -> np.ndarray:
+def constants(cable: Cable, axial: float = 1.0,
+              change: Callable[[np.ndarray], np.ndarray] | None = None) -> np.ndarray:
     """Return (elements, n), or (1, n) for equal elements with a straight stress-free shape.
 
-    axial: a factor of EA, of a cable's law alone; S: stiffness of the section, by default that of the cable.
+    axial: a factor of EA, of a cable's law alone; change: of the stiffness of a section.
     """
-    lengths = cable.mesh.lengths
-    if S is None:
-        S = section_stiffness(cable.stiffness_law, cable.section, cable.material, cable.dim)
-    if axial != 1.0:
-        S = S * [axial, 1.0, axial][: len(S)]  # of EA, EI, and EA of the upper modes of an assumed strain
     reference = cable.reference
-    n = cable.elements if cable.is_curved and reference is not None else len(lengths)
-    shapes = [None] * n if reference is None else reference[:n]
+    lengths = cable.mesh.all_lengths if cable.is_curved and reference is not None else cable.mesh.lengths
+    sections = [section_stiffness(cable.stiffness_law, piece.section, piece.material, cable.dim)
+                for piece in cable.uniform_pieces]
+    if axial != 1.0:  # of EA, EI, and EA of the upper modes of an assumed strain
+        sections = [S * [axial, 1.0, axial][: len(S)] for S in sections]
+    if change is not None:
+        sections = [change(S) for S in sections]
+    shapes = [None] * len(lengths) if reference is None else reference[: len(lengths)]
+    each = sections * len(lengths) if len(sections) == 1 else list(
+        chain.from_iterable([S] * (piece.end - piece.first)
+                            for piece, S in zip(cable.uniform_pieces, sections, strict=True)))
     return np.array([element_constants(cable.library, cable.element, cable.kernel_law, float(length), S, e0)
-                     for length, e0 in zip(np.broadcast_to(lengths, n), shapes, strict=True)])
+                     for length, S, e0 in zip(lengths, each, shapes, strict=True)])
 
 
 def element_constants(library: str | None, element: str, law: str, length: float, S: np.ndarray,

@@ -66,8 +66,7 @@ def _parts_of(name: str, scene: SceneData) -> list[str]:
 
 def _masses(scene: SceneData) -> dict[str, float]:
     """Return the masses of cables and bodies, kg."""
-    return {**{name: cable.length * cable.material.density * cable.section.mass_moments()[0]
-               for name, cable in scene.cables.items()}, **{name: body.mass for name, body in scene.bodies.items()}}
+    return {name: part.mass for parts in (scene.cables, scene.bodies) for name, part in parts.items()}
 
 
 def _dofs(model: Model, name: str) -> slice:

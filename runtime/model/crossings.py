@@ -63,8 +63,8 @@ def _crossing(part: Crossing, builder: ModelBuilder) -> CrossingModel:
     sliding = None if friction is None or friction.sticks else friction
     law = (radius, sign_of(part, start.normal, start.d), part.stiffness * linear, part.stiffness * (not linear),
            part.damping, MIN_PENETRATION, *((0.0, 1.0) if sliding is None else (sliding.coefficient, sliding.velocity)))
-    masses = [scene.cables[line.name].material.density * scene.cables[line.name].section.area * line.mesh.mean
-              for line in lines]
+    masses = [piece.material.density * piece.section.area * line.mesh.mean
+              for line in lines for piece in scene.cables[line.name].uniform_pieces]
     sticking = friction.coefficient if friction and part.has_friction_spring else 0.0
     return CrossingModel(
         type="crossing", name=part.name or "", kernel=KERNELS[dim], cables=numbers, attachments=ends, law=law,

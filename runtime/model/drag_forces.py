@@ -10,7 +10,7 @@ from ..kernels.libraries import kernels_of
 from ..parts.polar import Polar
 from ..parts.validation import LENGTH_TOLERANCE
 from .drags import DragModel
-from .model import CableModel, Model
+from .model import Model
 from .states import attachment_points, element_coordinates, positions, spatial
 
 
@@ -29,15 +29,16 @@ class Turning:
 
 def densities(model: Model, drag: DragModel, time: np.ndarray, q: np.ndarray, v: np.ndarray
               ) -> tuple[np.ndarray, Turning | None]:
-    """Return (T, elements, points, 3), drag and buoyancy on a cable at its points of quadrature, N/m undeformed, and
-    the moments on sections of a beam with a polar.
+    """Return (T, elements, points, 3), drag and buoyancy on its elements at its points of quadrature, N/m undeformed,
+    and the moments on sections of a beam with a polar.
 
     time (T,) in s, q (T, n_q), v (T, n_dof).
     """
     cable, dim = model.cables[drag.cable], model.dim
-    e, rates = (element_coordinates(cable, values) for values in (q, v))
+    own = slice(drag.first, drag.first + drag.n_elements)
+    e, rates = (element_coordinates(cable, values)[:, own] for values in (q, v))
     local = e - np.where(positions(cable)[:, None], e[:, :, :1], 0.0)
-    r, slope, velocity = (_at_points(cable, shape, of)
+    r, slope, velocity = (_at_points(shape, of)
                           for shape, of in ((drag.N, e), (drag.N_x, local), (drag.N, rates)))
     flow = _velocity(drag, time[:, None, None], r)
     kernel = getattr(kernels_of(None), f"{drag.kernel}_along_cable")
@@ -48,7 +49,7 @@ def densities(model: Model, drag: DragModel, time: np.ndarray, q: np.ndarray, v:
         lift = getattr(kernels_of(None), f"{drag.kernel}_lift_along_cable")
         f = f + lift.rows(n, t, w, np.array(drag.lift))[0]
     if drag.polar is not None:
-        d = _at_points(cable, drag.N_chord, local).reshape(n, dim)
+        d = _at_points(drag.N_chord, local).reshape(n, dim)
         forces = _on_sections(drag, drag.polar, t, d, w)
         f = f + forces[:, 0]
         couple = np.cross(t, forces[:, 1]) + np.cross(d, forces[:, 2])
@@ -56,11 +57,11 @@ def densities(model: Model, drag: DragModel, time: np.ndarray, q: np.ndarray, v:
     return spatial(f.reshape(r.shape) + drag.buoyancy), turning
 
 
-def _at_points(cable: CableModel, shape: np.ndarray, values: np.ndarray) -> np.ndarray:
+def _at_points(shape: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Return (T, elements, points, dim) from shape functions (1 or elements, points, vectors) and vectors (T, elements,
     vectors, dim).
     """
-    N = np.broadcast_to(shape, (cable.n_elements, *shape.shape[1:]))
+    N = np.broadcast_to(shape, (values.shape[1], *shape.shape[1:]))
     return np.asarray(np.einsum("egk,tekd->tegd", N, values))
 
 
@@ -93,7 +94,7 @@ def outside_tables(model: Model, q: np.ndarray) -> list[str]:
             continue
         if drag.cable >= 0:
             cable = model.cables[drag.cable]
-            r = cable.nodal(q)[:, 0]
+            r = cable.nodal(q)[drag.first : drag.first + drag.n_elements + 1, 0]
         elif drag.coordinates is not None:
             r = drag.coordinates.places(q)
         else:

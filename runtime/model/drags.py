@@ -15,9 +15,10 @@ from ..parts.cable import Cable
 from ..parts.drag import Drag
 from ..parts.flow_profile import PowerProfile, TableProfile
 from ..parts.fluid import NO_SURFACE, Fluid
+from ..parts.piece import UniformPiece
 from ..parts.polar import Polar
-from ..parts.rope import Rope
 from ..parts.scene_data import SceneData
+from ..parts.section import Section
 from ..parts.velocity_table import AXES
 from .attachments import AttachmentModel, ModelBuilder
 from .coupling import CouplingKind, CouplingModel, no_numbers
@@ -36,12 +37,13 @@ class DragModel(AlongSpan, CouplingModel):
     """The force of a fluid on a cable, on a span of a rope, or on a point of a body; cable -1: along the span of the
     coordinates, or on a body, at the one attachment.
 
-    velocity (dim): m/s, multiplied by the signal of that number (-1: one) and the profile of the fluid at the height
-    base + up . r. degree: of the splines of its table, 0 without. origin (3,), axes (9,): those of the model, along
-    the ground's. coefficients, lift, section: arguments of the kernels. buoyancy (dim): N/m of a cable, N of a body.
-    wet: the section that a surface cuts, "all" for none. surface, bottom: heights, m. weights (1 or elements,
-    n_points), in m, and N, N_x and N_chord, of a beam's chord (1 or elements, n_points, vectors): quadrature on the
-    elements of the cable, once where they are equal; stride: points from one element to the next.
+    velocity (dim): m/s, multiplied by the signal of that number (-1: one) and the profile of the fluid at the
+    height base + up . r. degree: of the splines of its table, 0 without. origin (3,), axes (9,): those of the
+    model, along the ground's. first, n_elements: elements of the cable on which it acts. coefficients, lift,
+    section: arguments of the kernels. buoyancy (dim): N/m of a cable, N of a body. wet: the section that a surface
+    cuts, "all" for none. surface, bottom: heights, m. weights (1 or elements, n_points), in m, and N, N_x and
+    N_chord, of a beam's chord (1 or elements, n_points, vectors): quadrature on the elements of the cable, once
+    where they are equal; stride: points from one element to the next.
     """
 
     kernel: str
@@ -59,6 +61,8 @@ class DragModel(AlongSpan, CouplingModel):
     fluid: Fluid
     polar: Polar | None
     cable: int = -1
+    first: int = 0
+    n_elements: int = 0
     coordinates: SpanCoordinates | None = None
     coefficients: tuple[float, ...] = ()
     lift: tuple[float, ...] = (0.0, MIN_SPEED)
@@ -73,19 +77,28 @@ class DragModel(AlongSpan, CouplingModel):
 
 
 def drag_models(builder: ModelBuilder) -> Iterator[DragModel]:
-    """Yield the models of the drags of a scene, one for each fluid that acts on a part, of a rope for each span."""
+    """Yield the models of the drags of a scene, one for each fluid that acts on a part, of a rope for each span, of a
+    cable for each of its stretches.
+    """
     spans = {rope.part.name: rope.spans for rope in builder.ropes}
-    return (_in_fluid(part, fluid, builder, span) for part in builder.scene.drags.values()
-            for fluid in builder.scene.fluids_of(part) for span in spans.get(part.on, (None,)))
+    for part in builder.scene.drags.values():
+        line = builder.scene.line(part.on)
+        for fluid in builder.scene.fluids_of(part):
+            for stretch in (None,) if line is None else part.stretches(line):
+                for span in spans.get(part.on, (None,)):
+                    yield _in_fluid(part, fluid, builder, stretch, span)
 
 
-def _in_fluid(part: Drag, fluid: Fluid, builder: ModelBuilder, span: SpanCoordinates | None) -> DragModel:
+def _in_fluid(part: Drag, fluid: Fluid, builder: ModelBuilder, stretch: UniformPiece | None,
+              span: SpanCoordinates | None) -> DragModel:
+    """Return the model of a drag in a fluid on a stretch of a cable, on a span of a rope, or on a body."""
+    section = None if stretch is None else stretch.section
     scene, dim = builder.scene, builder.scene.dim
     signal, factor = builder.signals.scale(fluid.scale)
     up, base = _height(scene)
     line, plane = scene.line(part.on), None if scene.plane_axes is None else scene.plane_axes.plane
     origin, axes = (np.zeros(3), np.eye(3)) if plane is None else (plane.origin, plane.axes)
-    displaced, bottom = fluid.density * part.displaced(line), fluid.bottom(scene.fluids.values())
+    displaced, bottom = fluid.density * part.displaced(section), fluid.bottom(scene.fluids.values())
     cut = "section" if line is not None else "sphere" if part.height is None else "column"
     degree, table = _table(fluid, dim)
     model = DragModel(
@@ -95,28 +108,28 @@ def _in_fluid(part: Drag, fluid: Fluid, builder: ModelBuilder, span: SpanCoordin
         wet=cut if fluid.surface is not None or bottom > -NO_SURFACE else "all", surface=fluid.top, bottom=bottom,
         fluid=fluid, polar=part.polar,
         entries=table | _profile(fluid) | _foil(part, fluid, dim) | {
-            "extent": part.extent(line), "displaced": displaced, "added": (),
+            "extent": part.extent(section), "displaced": displaced, "added": (),
             "is_foil": part.polar is not None or (line is None and part.lift != 0)})
     if model.has_inertia:
         added = part.added_of_body(dim) if line is None else part.added_of_cable()
         model.entries["added"] = (displaced * added).ravel()
-    if line is None:
+    if line is None or stretch is None:
         coefficient = part.coefficient if part.polar is None else 0.0
         model.coefficients = (fluid.density / 2 * part.area * coefficient, MIN_SPEED)
         model.attachments = [builder.attachment(Attachment(on=part.on, at=part.at), np.eye(3))]
     else:
-        _along_line(model, part, line)
+        _along_line(model, part, stretch.section)
         if isinstance(line, Cable):
-            _along_cable(model, part, line, builder)
+            _along_cable(model, part, line, stretch, builder)
         else:
             model.coordinates = span
     return model
 
 
-def _along_line(model: DragModel, part: Drag, line: Cable | Rope) -> None:
+def _along_line(model: DragModel, part: Drag, section: Section) -> None:
     """Add the coefficients per length of a cable or a rope."""
     pressure, has_width = model.fluid.density / 2, part.normal or part.tangential or part.lift or part.polar
-    width = part.width(line) if has_width else 0.0
+    width = part.width(section) if has_width else 0.0
     model.lift = (pressure * width * part.lift, MIN_SPEED)
     model.coefficients = (pressure * width * part.normal, pressure * np.pi * width * part.tangential, MIN_SPEED)
     model.n_points = len(GAUSS[0])
@@ -124,11 +137,13 @@ def _along_line(model: DragModel, part: Drag, line: Cable | Rope) -> None:
         model.section = (pressure * width, width, MIN_SPEED)
 
 
-def _along_cable(model: DragModel, part: Drag, cable: Cable, builder: ModelBuilder) -> None:
-    """Add the quadrature on a cable."""
+def _along_cable(model: DragModel, part: Drag, cable: Cable, stretch: UniformPiece, builder: ModelBuilder) -> None:
+    """Add the quadrature on a stretch of a cable."""
     model.cable = builder.cable_index[cable.name]
     on = builder.cables[model.cable]
-    lengths, model.stride = on.mesh.lengths, 0 if on.mesh.is_even else len(GAUSS[0])
+    model.first, model.n_elements = stretch.first, stretch.end - stretch.first
+    lengths = on.mesh.lengths if on.mesh.is_even else on.mesh.lengths[stretch.first : stretch.end]
+    model.stride = 0 if on.mesh.is_even else len(GAUSS[0])
     model.N, model.N_x, model.weights = along_elements(on.kernel("on_axis"), lengths, GAUSS)
     if part.polar is not None:
         slopes = [[on.kernel("slopes")(length, length * (1 + x) / 2) for x in GAUSS[0]] for length in lengths]

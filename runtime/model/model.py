@@ -6,10 +6,10 @@ Coordinates, unknowns and their order are those of engine/bodies/model.h.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import field
 from functools import cached_property
-from typing import Any, ClassVar, Protocol, TypeVar, cast
+from typing import Any, ClassVar, NamedTuple, Protocol, TypeVar, cast
 
 import numpy as np
 
@@ -51,12 +51,25 @@ class Kernel(Protocol):
         """Return the outputs for n sets of arguments: of each, n along the first axis, or one for all."""
 
 
+class CablePiece(NamedTuple):
+    """Elements of a cable, up to that of the number `end`, with one Kelvin-Voigt retardation time tau in s and one
+    mass_damping in 1/s.
+
+    doubled: nodes before them that the cable has twice.
+    """
+
+    end: int
+    tau: float
+    mass_damping: float
+    doubled: int = 0
+
+
 @dataclass(eq=False, repr=False)
 class CableModel:
     """One cable: constants of its elements and the position of its coordinates.
 
-    m: (1 or elements, nodal vectors, nodal vectors) of an element; A: (1 or elements, constants). share: (vectors,)
-    `Hull.share`, None where no coupling needs it.
+    pieces: in their order. m: (1 or elements, nodal vectors, nodal vectors) of an element; A: (1 or elements,
+    constants). share: (vectors,) `Hull.share`, None where no coupling needs it.
     """
 
     name: str
@@ -64,8 +77,7 @@ class CableModel:
     law: str
     mesh: Mesh
     first: int
-    tau: float
-    mass_damping: float
+    pieces: tuple[CablePiece, ...]
     m: np.ndarray
     A: np.ndarray
     shape: tuple[int, int, int]
@@ -77,6 +89,21 @@ class CableModel:
     def n_elements(self) -> int:
         """Return the number of its elements."""
         return self.mesh.n_elements
+
+    @property
+    def tau(self) -> float:
+        """Return the largest Kelvin-Voigt retardation time of its pieces, s."""
+        return max(piece.tau for piece in self.pieces)
+
+    @property
+    def mass_damping(self) -> float:
+        """Return the largest mass-proportional damping of its pieces, 1/s."""
+        return max(piece.mass_damping for piece in self.pieces)
+
+    def of_elements(self, of_piece: Callable[[CablePiece], float]) -> np.ndarray:
+        """Return (elements,): a number of the piece of each element."""
+        ends = [0, *(piece.end for piece in self.pieces)]
+        return np.repeat([of_piece(piece) for piece in self.pieces], np.diff(ends))
 
     @property
     def coordinates(self) -> slice:

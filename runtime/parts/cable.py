@@ -14,7 +14,8 @@ from .cable_fields import CableFields, library_directory
 from .cable_laws import others, possible_laws
 from .drawn_cable import DrawnCable
 from .hanging import catenary
-from .section import GeneralSection
+from .piece import with_elements
+from .section import GeneralSection, Section
 from .section_stiffness import kernel_law
 from .validation import LENGTH_TOLERANCE, show, shown
 
@@ -57,6 +58,7 @@ class Cable(DrawnCable, CableFields):
         elements for axial waves
     section: cross-section
     material: material
+    pieces: in the place of section, material, elements and rest_length: a list of `Piece`, from start to end
     up: direction of the section's height at the start, less its component along the axis; the section follows the curve
         without rotation about its tangent. It may lie along the axis of a round section or of an element without
         section axes: the height is then along the ground's axis most nearly across
@@ -98,6 +100,21 @@ class Cable(DrawnCable, CableFields):
         return data
 
     @model_validator(mode="after")
+    def _consists_of_pieces(self) -> "Cable":
+        given = [name for name, value in (("section", self.given_section), ("material", self.given_material),
+                                          ("elements", self.given_elements), ("nodes", self.nodes),
+                                          ("rest_length", self.rest_length)) if value is not None]
+        if self.pieces is None:
+            return self
+        if given:
+            raise ValueError(f"has pieces and {given[0]}", f"leave {given[0]} out: each piece has its own "
+                             + {"nodes": "elements", "rest_length": "length"}.get(given[0], given[0]))
+        if self.rest == "drawn" and not self._shape.straight:
+            raise ValueError("is drawn curved and has pieces, whose stress-free shape is straight",
+                             'give rest="straight"')
+        return self
+
+    @model_validator(mode="after")
     def _is_drawn(self) -> "Cable":
         ends = self.start is not None, self.end is not None
         if self.points is not None and any(ends):
@@ -107,7 +124,7 @@ class Cable(DrawnCable, CableFields):
             raise ValueError(f"{missing} missing")
         if self.shape is not None and self.points is not None:
             raise ValueError(f'has points and shape="{self.shape}"', "give one of them")
-        if self.shape == "hanging" and self.rest_length is None:
+        if self.shape == "hanging" and self.rest_length is None and self.pieces is None:
             raise ValueError('has shape="hanging", but rest_length is missing')
         if self.shape == "hanging" and self.rest != "straight":
             raise ValueError('has shape="hanging", but rest="drawn"', 'leave rest out, or give the '
@@ -171,15 +188,17 @@ class Cable(DrawnCable, CableFields):
             able = [f"{name} ({', '.join(laws)})" for name, laws in curved.items() if laws]
             raise ValueError(f'{self.element} with law "{self.law}" is stress-free only where it is straight, but '
                              "it is drawn curved", 'take rest="straight", or one of ' + ", ".join(able))
-        if self.dim == 3 and kernel_law(self.stiffness_law) == "continuum" and self.material.is_incompressible:
-            raise ValueError(f'law "{self.law}" needs a poisson_ratio below 0.5, at which Lamé\'s λ is infinite, got '
-                             f"{self.material.poisson():.9g}", 'take law="structural", which needs E and G alone')
-        (self._check_cable_section if kind.is_cable else self._check_beam_section)()
+        for piece in self.uniform_pieces:
+            ratio = piece.material.poisson()
+            if self.dim == 3 and kernel_law(self.stiffness_law) == "continuum" and piece.material.is_incompressible:
+                raise ValueError(f'law "{self.law}" needs a poisson_ratio below 0.5, at which Lamé\'s λ is infinite, '
+                                 f"got {ratio:.9g}", 'take law="structural", which needs E and G alone')
+            (self._check_cable_section if kind.is_cable else self._check_beam_section)(piece.section)
         return self
 
-    def _check_cable_section(self) -> None:
+    def _check_cable_section(self, section: Section) -> None:
         """Raise ValueError where an element without section axes is given what only beams have."""
-        section, beams = self.section, "leave it out, or take " + others(self.dim, cable=False)
+        beams = "leave it out, or take " + others(self.dim, cable=False)
         moments = section.second_moment_about_z, section.second_moment_about_y
         if self.dim == 3 and abs(moments[0] - moments[1]) > LENGTH_TOLERANCE * max(moments):
             raise ValueError(f"{self.element} has one bending stiffness: its section needs equal second moments, "
@@ -189,9 +208,9 @@ class Cable(DrawnCable, CableFields):
         if isinstance(section, GeneralSection) and section.has_rotary:
             raise ValueError(f"section.rotary_moment is given, but {self.element} has no rotary inertia", beams)
 
-    def _check_beam_section(self) -> None:
+    def _check_beam_section(self, section: Section) -> None:
         """Raise ValueError where the law of a beam needs other data of the section than those given."""
-        given, is_general = self.section.given_beside_shape, isinstance(self.section, GeneralSection)
+        given, is_general = section.given_beside_shape, isinstance(section, GeneralSection)
         if self.traits.kind == "structural":
             missing = ({"shear_factors", "torsion_constant"} if self.dim == 3 else {"shear_factors"}) - given
             if is_general and missing:
@@ -211,6 +230,8 @@ class Cable(DrawnCable, CableFields):
         Unequal elements are divided or joined evenly where the number is a multiple or a divisor of theirs. Else the
         new elements are equal.
         """
+        if self.pieces is not None:
+            return {"pieces": with_elements(self.pieces, elements)}
         nodes = cable_mesh.refined(self.uneven_nodes, elements)
         return {"nodes": nodes, "elements": None} if nodes else {"elements": elements, "nodes": None}
 
@@ -230,7 +251,8 @@ class Cable(DrawnCable, CableFields):
         """Return the entries of a cable with changes.
 
         Another shape or law replaces all entries of the old one; another measure keeps the other measures. Elements
-        replace nodes, and nodes replace elements. A hanging cable is free of stress where it is straight.
+        replace nodes, nodes replace elements, and pieces replace section, material, elements and rest_length. A hanging
+        cable is free of stress where it is straight.
         """
         other = {"elements": "nodes", "nodes": "elements"}
         left: dict[str, Any] = {other[name]: None for name in other if changes.get(name) is not None}
@@ -238,6 +260,8 @@ class Cable(DrawnCable, CableFields):
             left |= dict.fromkeys(("start", "end", "points", "shape"))
         if changes.get("shape") == "hanging":
             left["rest"] = None
+        if changes.get("pieces") is not None:
+            left |= dict.fromkeys(("section", "material", "elements", "nodes", "rest_length"))
         if "law" not in changes:
             left |= cable_laws.changed(self.kind_of_element, self.law, changes, self.library)
         elif changes["law"] != self.law:

@@ -2,9 +2,11 @@
 
 import os
 from collections.abc import Callable
+from itertools import accumulate, pairwise
 from typing import Annotated, Any
 
-from pydantic import Field, PrivateAttr, ValidationInfo
+import numpy as np
+from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo
 
 from ..errors import SceneError, near
 from ..kernels.elements import ElementKind
@@ -14,8 +16,9 @@ from .cable_laws import DEFAULT_ELEMENT, MEASURES
 from .cable_mesh import Nodes
 from .material import Material
 from .part import Part
+from .piece import Pieces, UniformPiece
 from .schemas import ONLY_PYTHON, POINT, FileEntry, GivenAs, Turning, checked, list_of_lists
-from .section import AnySection, outer_radius_of
+from .section import AnySection, Section, outer_radius_of
 from .validation import Count, Name, Points, Vector, one_of, positive, shown, xyz
 
 
@@ -42,6 +45,16 @@ def _element(value: Any, info: ValidationInfo) -> str:
     return value
 
 
+def _unless_pieces(value: Any, info: ValidationInfo) -> Any:
+    """Return a value, which a cable without pieces must have."""
+    if value is None and info.data.get("pieces", ()) is None:
+        raise ValueError("is missing")
+    return value
+
+
+UNLESS_PIECES = AfterValidator(_unless_pieces)
+
+
 class CableFields(Part):
     """Base of a cable: its fields, which `Cable` describes."""
 
@@ -61,8 +74,9 @@ class CableFields(Part):
     strain: Annotated[str | None, one_of(MEASURES["strain"], optional=True)] = None
     curvature: Annotated[str | None, one_of(MEASURES["curvature"], optional=True)] = None
     membrane: Annotated[str | None, one_of(MEASURES["membrane"], optional=True)] = None
-    section: AnySection
-    material: Material
+    pieces: Pieces | None = None
+    given_section: Annotated[AnySection | None, Field(alias="section", validate_default=True), UNLESS_PIECES] = None
+    given_material: Annotated[Material | None, Field(alias="material", validate_default=True), UNLESS_PIECES] = None
     up: Annotated[Vector, xyz()] = (0.0, 1.0, 0.0)
     rest: Annotated[str, one_of(("drawn", "straight"))] = "drawn"
     rest_length: Annotated[float, positive("m")] | None = None
@@ -72,7 +86,7 @@ class CableFields(Part):
     @property
     def is_open(self) -> bool:
         """Return whether the number of its elements is still to be chosen."""
-        return self.given_elements is None and self.nodes is None
+        return self.given_elements is None and self.nodes is None and self.pieces is None
 
     @property
     def elements(self) -> int:
@@ -81,8 +95,56 @@ class CableFields(Part):
             return self.given_elements
         if self.nodes is not None:
             return len(self.nodes) - 1
+        if self.pieces is not None:
+            return sum(piece.elements for piece in self.pieces)
         raise SceneError(self.where, "has no elements yet",
                          "give elements=, or let them be chosen: scene.choose(tol).scene")
+
+    @property
+    def n_elements(self) -> int:
+        """Return the number of its elements, 1 where it is still to be chosen."""
+        return 1 if self.is_open else self.elements
+
+    @property
+    def uniform_pieces(self) -> tuple[UniformPiece, ...]:
+        """Return its pieces, one of a cable with one section and one material.
+
+        Of a cable whose elements are still to be chosen, their number is 1.
+        """
+        if self.pieces is None:
+            assert self.given_section is not None, f"{self.where} has no section"
+            assert self.given_material is not None, f"{self.where} has no material"
+            return UniformPiece(0, self.n_elements, self.given_section, self.given_material),
+        ends = [0, *accumulate(piece.elements for piece in self.pieces)]
+        return tuple(UniformPiece(first, end, piece.section, piece.material)
+                     for piece, (first, end) in zip(self.pieces, pairwise(ends), strict=True))
+
+    @property
+    def section(self) -> Section:
+        """Return its section. Raises SceneError where its pieces have several."""
+        if self.given_section is not None:
+            return self.given_section
+        sections = [piece.section for piece in self.uniform_pieces]
+        if any(each != sections[0] for each in sections):
+            raise SceneError(self.where, "has pieces of several sections, where one is needed",
+                             "give one section to all pieces, or a cable to each piece and join them by ties")
+        return sections[0]
+
+    @property
+    def material(self) -> Material:
+        """Return its material. Raises SceneError where its pieces have several."""
+        if self.given_material is not None:
+            return self.given_material
+        materials = [piece.material for piece in self.uniform_pieces]
+        if any(each != materials[0] for each in materials):
+            raise SceneError(self.where, "has pieces of several materials, where one is needed",
+                             "give one material to all pieces, or a cable to each piece and join them by ties")
+        return materials[0]
+
+    def of_elements(self, of_piece: Callable[[UniformPiece], float]) -> np.ndarray:
+        """Return (elements,): a number of the piece of each element."""
+        pieces = self.uniform_pieces
+        return np.repeat([of_piece(piece) for piece in pieces], [piece.end - piece.first for piece in pieces])
 
     @property
     def kind_of_element(self) -> ElementKind:
@@ -97,7 +159,8 @@ class CableFields(Part):
     @property
     def is_round(self) -> bool:
         """Return whether all directions across its axis are equivalent: a round section, or elements without axes."""
-        return outer_radius_of(self.section) is not None or not self.kind_of_element.director
+        return not self.kind_of_element.director or all(outer_radius_of(piece.section) is not None
+                                                        for piece in self.uniform_pieces)
 
     @property
     def stiffness_law(self) -> str:

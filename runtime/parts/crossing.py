@@ -1,7 +1,7 @@
 """Contact of two lines at their closest points: of a cable with a bar or with another cable."""
 
 from collections.abc import Iterator
-from typing import Annotated
+from typing import Annotated, cast
 
 from pydantic import model_validator
 
@@ -91,7 +91,7 @@ class Crossing(Part):
 
 def radius_of(cable: Cable) -> float:
     """Return the radius of a cable's section, m. Raises ValueError where it is not round."""
-    radius = outer_radius_of(cable.section)
-    if radius is None:
+    radii = {outer_radius_of(piece.section) for piece in cable.uniform_pieces}
+    if len(radii) != 1 or None in radii:
         raise ValueError(f'radius is missing, which the section of cable "{cable.name}" does not tell')
-    return radius
+    return cast(float, radii.pop())

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 
 from .part import Part
+from .piece import UniformPiece
 from .polar import Polar
 from .quantity import all_of_engine
 from .schemas import AXIS, TENSOR, Turning, checked, list_of_lists, list_schema, number_schema
-from .section import Tube, outer_radius_of
+from .section import Section, Tube, outer_radius_of
 from .validation import (
     Matrix,
     Name,
@@ -21,6 +22,7 @@ from .validation import (
     finite,
     not_negative,
     number,
+    place_on,
     positive,
     show,
     symmetric,
@@ -31,8 +33,8 @@ if TYPE_CHECKING:
     from .cable import Cable
     from .rope import Rope
 
-OF_CABLE = ("normal", "tangential", "lift", "polar", "chord", "diameter", "displaced_area", "added_mass",
-            "added_mass_tangential")
+OF_CABLE = ("start", "stop", "normal", "tangential", "lift", "polar", "chord", "diameter", "displaced_area",
+            "added_mass", "added_mass_tangential")
 OF_ROPE = ("normal", "tangential", "lift", "diameter", "displaced_area", "added_mass", "added_mass_tangential")
 OF_BODY = ("area", "coefficient", "lift", "polar", "span", "chord", "at", "volume", "height", "added_mass")
 
@@ -69,6 +71,7 @@ class Drag(Part):
 
     on: the cable or the rope, all of it, or the body
     fluid: by default all fluids of the scene, which must not overlap
+    start, stop: of a cable, arc-lengths of the nodes between which the fluid acts, m; by default all of it
     normal: of a cable, coefficient of the force ``ρ/2 d normal |w_n| w_n`` a length
     tangential: of a cable, coefficient of the force ``ρ/2 π d tangential |w_t| w_t`` a length
     diameter: of a cable, d, m; by default that of the section
@@ -100,6 +103,8 @@ class Drag(Part):
     name: Name | None = None
     on: Reference
     fluid: Reference | None = None
+    start: Annotated[float, place_on("on")] | None = None
+    stop: Annotated[float, place_on("on")] | None = None
     normal: Annotated[float, not_negative()] = 0.0
     tangential: Annotated[float, not_negative()] = 0.0
     diameter: Annotated[float, positive("m")] | None = None
@@ -143,30 +148,61 @@ class Drag(Part):
         C = self.added_mass if isinstance(self.added_mass, tuple) else np.eye(3) * (self.added_mass or 0.0)
         return np.array(C)[:dim, :dim]
 
-    def width(self, line: "Cable | Rope") -> float:
-        """Return the diameter of drag, m. Raises ValueError where the section has none."""
+    def width(self, section: Section) -> float:
+        """Return the diameter of drag of a section of a cable or a rope, m. Raises ValueError where it has none."""
         if self.diameter is not None:
             return self.diameter
-        radius = outer_radius_of(line.section)
+        radius = outer_radius_of(section)
         if radius is None:
-            raise ValueError(f"diameter is missing, which the section of the {line.kind} does not tell")
+            raise ValueError("diameter is missing, which the section does not tell")
         return 2 * radius
 
-    def extent(self, line: "Cable | Rope | None") -> float:
-        """Return half of the height of a cable's or a rope's section or of a body at a surface, in m; 0 for a point."""
-        if line is None:
+    def extent(self, section: Section | None) -> float:
+        """Return half of the height of a cable's or a rope's section or, without one, of a body at a surface, in m; 0
+        for a point.
+        """
+        if section is None:
             if self.height is not None:
                 return self.height / 2
             return math.cbrt(3 * self.volume / (4 * math.pi)) if self.volume else math.sqrt(self.area / math.pi)
         try:
-            return self.width(line) / 2
+            return self.width(section) / 2
         except ValueError:
-            return math.sqrt(self.displaced(line) / math.pi)
+            return math.sqrt(self.displaced(section) / math.pi)
 
-    def displaced(self, line: "Cable | Rope | None") -> float:
-        """Return the displaced volume, of a cable or a rope by length, m², of a body in all, m³."""
-        if line is None:
+    def displaced(self, section: Section | None) -> float:
+        """Return the displaced volume, of a section of a cable or a rope by length, m², of a body in all, m³."""
+        if section is None:
             return self.volume
         if self.displaced_area is not None:
             return self.displaced_area
-        return math.pi * line.section.outer_radius**2 if isinstance(line.section, Tube) else line.section.area
+        return math.pi * section.outer_radius**2 if isinstance(section, Tube) else section.area
+
+    def stretches(self, line: "Cable | Rope") -> list[UniformPiece]:
+        """Return the elements of a cable or a rope that it acts on, by pieces with equal forces, see `UniformPiece`.
+
+        Raises ValueError where the section of one of them has no diameter that drag needs.
+        """
+        first, end = 0, line.n_elements
+        if self.start is not None or self.stop is not None:
+            assert not hasattr(line, "route"), f"{self.where} is of a cable"
+            first, end = (line.node(s) if s is not None else other
+                          for s, other in ((self.start, first), (self.stop, end)))
+        found: list[UniformPiece] = []
+        before: tuple[float, float, float] | None = None
+        for piece in line.uniform_pieces:
+            begin, last = max(piece.first, first), min(piece.end, end)
+            if begin >= last:
+                continue
+            sizes = self._sizes(piece.section)
+            if sizes == before:
+                found[-1] = found[-1]._replace(end=last)
+            else:
+                found.append(piece._replace(first=begin, end=last))
+            before = sizes
+        return found
+
+    def _sizes(self, section: Section) -> tuple[float, float, float]:
+        """Return what forces depend on of a section, in m and m²."""
+        has_width = self.normal or self.tangential or self.lift or self.polar
+        return self.width(section) if has_width else 0.0, self.displaced(section), self.extent(section)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ from ..kernels.elements import LawTraits
 from ..kernels.mesh import Mesh
 from . import cable_drawing, cable_mesh, curves
 from .cable_fields import CableFields
+from .piece import UniformPiece
 from .plane import Plane
 from .section_stiffness import kernel_law
 from .validation import LENGTH_TOLERANCE, Vector
@@ -46,12 +48,14 @@ class DrawnCable(Fields):
     @property
     def length(self) -> float:
         """Return the undeformed length in m."""
+        if self.pieces is not None:
+            return sum(piece.length for piece in self.pieces)
         return self.drawn_length if self.rest_length is None else self.rest_length
 
     @property
     def stretch(self) -> float:
         """Return the drawn length over the undeformed length."""
-        return 1.0 if self.rest_length is None else self.drawn_length / self.rest_length
+        return 1.0 if self.rest_length is None and self.pieces is None else self.drawn_length / self.length
 
     @property
     def is_curved(self) -> bool:
@@ -72,9 +76,32 @@ class DrawnCable(Fields):
     @property
     def mesh(self) -> Mesh:
         """Return its mesh. Raises SceneError where its elements are still to be chosen."""
+        if self.pieces is not None:
+            return cable_mesh.mesh_of_pieces(self.pieces)
         if self.nodes is None:
             return cable_mesh.even_mesh(self.length / self.elements, self.elements)
         return cable_mesh.mesh_of(self.nodes, self.length)
+
+    def lengths_by_piece(self) -> Iterator[tuple[UniformPiece, np.ndarray]]:
+        """Yield its pieces with the lengths of their elements, in m: (1,) of equal elements of one piece."""
+        lengths, pieces = self.mesh.lengths, self.uniform_pieces
+        for piece in pieces:
+            yield piece, lengths if len(pieces) == 1 else lengths[piece.first : piece.end]
+
+    @property
+    def mass(self) -> float:
+        """Return its mass in kg."""
+        return sum(float(lengths.sum() if len(lengths) == piece.end - piece.first else self.length)
+                   * piece.material.density * float(piece.section.mass_moments()[0])
+                   for piece, lengths in self.lengths_by_piece())
+
+    def piece_at(self, s: float) -> UniformPiece:
+        """Return the piece at arc-length ``s`` in m; between two pieces the one that begins there."""
+        pieces = self.uniform_pieces
+        if len(pieces) == 1:
+            return pieces[0]
+        element = self.element_at(s)
+        return next(piece for piece in pieces if element < piece.end)
 
     @property
     def kernel_law(self) -> str:
@@ -266,7 +293,7 @@ class DrawnCable(Fields):
         if self.is_open:
             return round(s / (LENGTH_TOLERANCE * self.length))
         length, elements = self.length, self.elements
-        if self.nodes is None:  # equal elements, whose nodes need no arrays
+        if self.nodes is None and self.pieces is None:  # equal elements, whose nodes need no arrays
             node = round(s / length * elements)
             at = length * node / elements  # as in `node_s`
         else:

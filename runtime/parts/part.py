@@ -78,7 +78,8 @@ class _TranslatingType(ModelMetaclass):
             complaints = error.errors(include_url=False)
         place = cls.title(data)  # type: ignore[attr-defined]
         found = [*(SceneError(place, *_unknown(name, known), entry=name) for name in data if name not in known),
-                 *(_of_complaint(place, each) for each in complaints if each["type"] != "default_factory_not_called")]
+                 *(_of_complaint(place, each, known) for each in complaints
+                   if each["type"] != "default_factory_not_called")]
         found[0].errors = tuple(found)
         raise found[0]
 
@@ -297,9 +298,12 @@ def _unknown(name: str, known: Iterable[str]) -> tuple[str, str]:
     return f'"{shown_path(name)}" is not known here', near(name, known)
 
 
-def _of_complaint(place: str, complaint: "ErrorDetails") -> SceneError:
-    """Return the error of a part at a place from a complaint of pydantic."""
-    path, remedy = ".".join(map(str, complaint["loc"])), None
+def _of_complaint(place: str, complaint: "ErrorDetails", known: Mapping[str, str]) -> SceneError:
+    """Return the error of a part at a place from a complaint of pydantic; known: its fields by keyword."""
+    loc = complaint["loc"]
+    if loc and loc[0] in known.values():  # pydantic names a default by its field
+        loc = next(keyword for keyword, field in known.items() if field == loc[0]), *loc[1:]
+    path, remedy = ".".join(map(str, loc)), None
     match complaint["type"]:
         case "value_error":
             cause, remedy = (*complaint["ctx"]["error"].args, None)[:2]
@@ -311,7 +315,7 @@ def _of_complaint(place: str, complaint: "ErrorDetails") -> SceneError:
         case _:
             message = complaint["msg"]
             cause = f"{message[:1].lower() + message[1:]}, got {shown(complaint['input'])}"
-    return SceneError(place, f"{path} {cause}".strip(), remedy, str(complaint["loc"][0]) if complaint["loc"] else None)
+    return SceneError(place, f"{path} {cause}".strip(), remedy, str(loc[0]) if loc else None)
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from .material import Material
 from .part import Part
+from .piece import UniformPiece
 from .quantity import Quantity, vector_of_time
 from .rope_items import ROUTE_ITEMS, Anchor, Block, Drum, RouteItem, Sheave
 from .schemas import POINT, checked, number_schema
@@ -270,6 +271,11 @@ class Rope(Part):
         if not self.mass:
             return (1,) * self.n_spans
         return self.elements if isinstance(self.elements, tuple) else (self.elements,) * self.n_spans
+
+    @property
+    def uniform_pieces(self) -> tuple[UniformPiece, ...]:
+        """Return its one piece, see `Cable.uniform_pieces`."""
+        return UniformPiece(0, self.n_elements, self.section, self.material),
 
     @property
     def n_elements(self) -> int:

@@ -22,6 +22,7 @@ from .load import DistributedForce, Force, Moment
 from .material import Material
 from .modal_body import ModalBody
 from .part import Part
+from .piece import Piece
 from .polar import Polar
 from .rigid_body import RigidBody
 from .rope import Rope
@@ -49,8 +50,6 @@ class SceneMethods(SceneData):
         self,
         name: str,
         *,
-        section: Section,
-        material: Material,
         start: Numbers | None = None,
         end: Numbers | None = None,
         points: Points | None = None,
@@ -64,6 +63,9 @@ class SceneMethods(SceneData):
         strain: str | None = None,
         curvature: str | None = None,
         membrane: str | None = None,
+        pieces: Sequence[Piece | dict[str, Any]] | None = None,
+        section: Section | None = None,
+        material: Material | None = None,
         up: Numbers = (0.0, 1.0, 0.0),
         rest: str = "drawn",
         rest_length: float | None = None,
@@ -281,6 +283,8 @@ class SceneMethods(SceneData):
         on: Named,
         *,
         fluid: Named | None = None,
+        start: float | None = None,
+        stop: float | None = None,
         normal: float = 0.0,
         tangential: float = 0.0,
         diameter: float | None = None,

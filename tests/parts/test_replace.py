@@ -162,6 +162,8 @@ OTHERS = {
               "element": "cable18", "law": "engineering_linear",
               "strain": "green", "curvature": "linear", "membrane": "assumed", "section": fu.Circle(radius=0.02),
               "material": fu.Material(youngs_modulus=2e9, poisson_ratio=0.3, density=1000), "up": (0, 1, 1),
+              "pieces": [fu.Piece(length=0.5, section=fu.Circle(radius=0.02), elements=n, material=fu.Material(
+                  youngs_modulus=2e9, poisson_ratio=0.3, density=density)) for density, n in ((1000, 4), (2000, 8))],
               "rest": "straight", "rest_length": 1.0, "shape": "straight",
               "velocity": (0, 0, 1), "angular_velocity": (0, 1, 0)},
     "pin": {"cable": "hook", "s": 0.25}, "clamp": {"cable": "rope", "s": 0.0, "fix": "section"},
@@ -189,7 +191,8 @@ OTHERS = {
                "free_play": 0.1, "name": "x"},
     "fluid": {"name": "breeze", "density": 1.3, "surface": -3.0, "velocity": (0, 0, 2.0), "scale": 2.0,
               "profile": fu.PowerProfile(exponent=0.2, reference_height=10)},
-    "drag": {"on": "hook", "fluid": "air", "normal": 1.0, "tangential": 0.01, "diameter": 0.03, "displaced_area": 0.0,
+    "drag": {"on": "hook", "fluid": "air", "start": 0.25, "stop": 0.75, "normal": 1.0, "tangential": 0.01,
+             "diameter": 0.03, "displaced_area": 0.0,
              "lift": 0.2, "added_mass": 1.0,
              "name": "x"},
     "surface": {"name": "floor", "shape": fu.HeightField(x=(0, 1), heights=(-7, -8)), "on": "B", "at": (0, -1, 0)},

@@ -11,9 +11,9 @@
 /* Returns the elements of a cable from the k-th on, in the form of block kernels. */
 static fu_elements elements_from(const fu_cable *cable, const double *q, const double *v, int k)
 {
-    const long at = cable->first + (long)k * cable->per_node;
+    const long at = fu_element_entry(cable, k);
     return (fu_elements){cable->lengths + (long)k * cable->l_stride,
-                         cable->tau,
+                         fu_piece_of(cable, k)->tau,
                          q + at,
                          v ? v + at : 0,
                          fu_element_constants(cable, k),
@@ -29,10 +29,11 @@ static int in_blocks(fu_block kernel, int n)
     return kernel ? n - (n % FU_BLOCK_ELEMENTS == 1) : 0;
 }
 
-/* Returns the number of elements of the next chunk, from the k-th on. */
-static int chunk(const fu_cable *cable, int k)
+/* Returns the number of elements from the k-th on, of one piece, up to a multiple of a size. */
+static int chunk(const fu_cable *cable, int k, int size)
 {
-    return cable->n_elements - k < CHUNK ? cable->n_elements - k : CHUNK;
+    const int end = fu_piece_of(cable, k)->end, next = k - k % size + size;
+    return (end < next ? end : next) - k;
 }
 
 /* Computes the contributions of n elements of a cable, from the first on, one after the other. */
@@ -70,8 +71,9 @@ static void inertia_forces(const fu_cable *cable, int first, int n, const fu_ele
 
 static void mass_damping_forces(const fu_cable *cable, int first, int n, const fu_elements *of, double *f)
 {
+    const double mass_damping = fu_piece_of(cable, first)->mass_damping;
     inertia_forces(cable, first, n, of, f);
-    for (int i = 0; i < n * cable->coordinates; ++i) f[i] *= cable->mass_damping;
+    for (int i = 0; i < n * cable->coordinates; ++i) f[i] *= mass_damping;
 }
 
 static void elastic_tangents(const fu_cable *cable, int n, const fu_elements *of, double *K)
@@ -97,7 +99,7 @@ typedef struct {
 static void add_group(const sum *job, int k, int n, const double *from, double *first)
 {
     const fu_cable *cable = job->cable;
-    double *at = job->f + cable->first + (long)k * cable->per_node;
+    double *at = job->f + fu_element_entry(cable, k);
     const int left = first ? cable->per_node : 0;
     for (int i = 0; i < left; ++i) first[i] = from[i];
     for (int i = left; i < cable->coordinates; ++i) at[i] += from[i];
@@ -122,7 +124,7 @@ static void add_part(const void *what, int part, int parts)
     const fu_range range = fu_part_of(job->cable->n_elements, CHUNK, part, parts);
     double out[CHUNK * FU_MAX_COORDINATES];
     for (int k = range.first, n; k < range.end; k += n) {
-        n = chunk(job->cable, k);
+        n = chunk(job->cable, k, CHUNK);
         const fu_elements of = elements_from(job->cable, job->q, job->v, k);
         for (int which = 0; which < 2 && job->forces[which]; ++which) {
             job->forces[which](job->cable, k, n, &of, out);
@@ -139,7 +141,7 @@ static void add_sum(const sum *job)
     const int parts = fu_share(job->model->threads, cable->n_elements * cable->per_node, add_part, job);
     for (int part = 1; part < parts; ++part) {
         const fu_range range = fu_part_of(cable->n_elements, CHUNK, part, parts);
-        double *at = job->f + cable->first + (long)range.first * cable->per_node;
+        double *at = job->f + fu_element_entry(cable, range.first);
         for (int which = 0; which < 2 && job->forces[which] && range.first < range.end; ++which)
             for (int i = 0; i < cable->per_node; ++i) at[i] += on_first_node(job, part, which)[i];
     }
@@ -180,7 +182,7 @@ void fu_discrete_forces(const fu_model *model, const double *q, const double *q_
 {
     double part[FU_MAX_COORDINATES];
     FU_EACH_CABLE(cable, model) {
-        for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
+        FU_EACH_ELEMENT(k, at, cable) {
             cable->law->discrete_force(fu_element_length(cable, k), q + at, q_next + at, fu_element_constants(cable, k),
                                        part);
             for (int i = 0; i < cable->coordinates; ++i) f[at + i] += part[i];
@@ -280,14 +282,14 @@ typedef struct {
     const fu_model *model;
     const fu_cable *cable;
     const double *q, *v;
-    double mass, rate, stiffness;
+    double inertia, rate, stiffness;
     fu_system *system;
 } matrix;
 
 /* Returns whether an element has dofs whose unknowns other elements have at other nodes. */
 static int is_shared(const fu_model *model, const fu_cable *cable, int k)
 {
-    const int *dofs = model->is_shared + cable->first + (long)k * cable->per_node;
+    const int *dofs = model->is_shared + fu_element_entry(cable, k);
     for (int i = 0; i < cable->coordinates; ++i)
         if (dofs[i]) return 1;
     return 0;
@@ -303,13 +305,13 @@ static void complete(const matrix *job, int k, double *K)
     if (job->stiffness == 0.0)
         for (int i = 0; i < size; ++i) K[i] = 0.0;
     else {
-        if (cable->tau > 0.0) {
+        if (of.tau > 0.0) {
             cable->law->damping_tangent(of.l[0], of.e, of.v, of.A, of.tau, job->rate, Q);
             for (int i = 0; i < size; ++i) K[i] += Q[i];
         }
         for (int i = 0; i < size; ++i) K[i] *= job->stiffness;
     }
-    add_mass(cable, k, job->mass, K);
+    add_mass(cable, k, job->inertia + job->stiffness * job->rate * fu_piece_of(cable, k)->mass_damping, K);
 }
 
 /* Adds a part of the elements. If threads share the work, `add_matrix_of` afterwards adds, in order, the first element
@@ -323,16 +325,17 @@ static void add_matrix_part(const void *what, int part, int parts)
     const int size = cable->coordinates * cable->coordinates;
     const fu_range range = fu_part_of(cable->n_elements, FU_BLOCK_ELEMENTS, part, parts);
     double every[FU_BLOCK_ELEMENTS * FU_MAX_COORDINATES * FU_MAX_COORDINATES];
-    for (int k = range.first; k < range.end; ++k) {
-        const int j = k % FU_BLOCK_ELEMENTS, left = cable->n_elements - k;
-        const fu_elements of = elements_from(cable, job->q, job->v, k);
-        double *K = every + j * size;
-        if (job->stiffness != 0.0 && j == 0)
-            elastic_tangents(cable, left < FU_BLOCK_ELEMENTS ? left : FU_BLOCK_ELEMENTS, &of, every);
+    for (int k = range.first, end = k; k < range.end; ++k) {
+        if (k == end) {
+            const fu_elements of = elements_from(cable, job->q, job->v, k);
+            end += chunk(cable, k, FU_BLOCK_ELEMENTS);
+            if (job->stiffness != 0.0) elastic_tangents(cable, end - k, &of, every + (FU_BLOCK_ELEMENTS - (end - k)) * size);
+        }
+        double *K = every + (FU_BLOCK_ELEMENTS - (end - k)) * size;
         complete(job, k, K);
         if (parts > 1 && (k == range.first || is_shared(model, cable, k)))
             memcpy(model->thread_work + (long)k * size, K, sizeof(double) * (size_t)size);
-        else fu_add_element_matrix(model, cable->first + k * cable->per_node, cable->coordinates, K, job->system);
+        else fu_add_element_matrix(model, fu_element_entry(cable, k), cable->coordinates, K, job->system);
     }
 }
 
@@ -346,7 +349,7 @@ static void add_matrix_of(const matrix *job)
         const fu_range range = fu_part_of(cable->n_elements, FU_BLOCK_ELEMENTS, part, parts);
         for (int k = range.first; k < range.end; ++k)
             if (k == range.first || is_shared(model, cable, k))
-                fu_add_element_matrix(model, cable->first + k * cable->per_node, cable->coordinates,
+                fu_add_element_matrix(model, fu_element_entry(cable, k), cable->coordinates,
                                       model->thread_work + (long)k * size, job->system);
     }
 }
@@ -356,8 +359,7 @@ void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, 
                        double stiffness, fu_system *system)
 {
     FU_EACH_CABLE(cable, model) {
-        const matrix job = {model, cable,     q,     v, inertia + stiffness * rate * cable->mass_damping,
-                            rate,  stiffness, system};
+        const matrix job = {model, cable, q, v, inertia, rate, stiffness, system};
         add_matrix_of(&job);
     }
 }
@@ -369,9 +371,10 @@ static void element_at_rest(const fu_cable *cable, int k, const double *q, const
     const fu_elements of = elements_from(cable, q, zero, k);
     for (int i = 0; i < cable->coordinates * cable->coordinates; ++i) K[i] = 0.0;
     if (which == FU_STIFFNESS_AT_REST) cable->law->elastic_tangent(of.l[0], of.e, of.A, K);
-    if (which == FU_DAMPING_AT_REST && cable->tau > 0.0)
+    if (which == FU_DAMPING_AT_REST && of.tau > 0.0)
         cable->law->damping_tangent(of.l[0], of.e, of.v, of.A, of.tau, 1.0, K);
-    if (which != FU_STIFFNESS_AT_REST) add_mass(cable, k, which == FU_MASS_AT_REST ? 1.0 : cable->mass_damping, K);
+    if (which != FU_STIFFNESS_AT_REST)
+        add_mass(cable, k, which == FU_MASS_AT_REST ? 1.0 : fu_piece_of(cable, k)->mass_damping, K);
 }
 
 void fu_add_cables_at_rest(const fu_model *model, const double *q, fu_at_rest which, int stride, double *band)
@@ -379,7 +382,7 @@ void fu_add_cables_at_rest(const fu_model *model, const double *q, fu_at_rest wh
     double K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
     FU_EACH_CABLE(cable, model) {
         const int n = cable->coordinates;
-        for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
+        FU_EACH_ELEMENT(k, at, cable) {
             element_at_rest(cable, k, q, model->zero, which, K);
             for (int i = 0; i < n; ++i)
                 for (int j = i; j < n; ++j) band[(long)(at + i) * stride + j - i] += K[i * n + j];
@@ -392,7 +395,7 @@ double fu_constant_kinetic_energy(const fu_model *model, const double *q, const 
 {
     double total = 0.0, part[FU_MAX_COORDINATES];
     FU_EACH_CABLE(cable, model) {
-        for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
+        FU_EACH_ELEMENT(k, at, cable) {
             cable->kernel->inertia_force(fu_element_mass(cable, k), v + at, part);
             for (int i = 0; i < cable->coordinates; ++i) total += 0.5 * part[i] * v[at + i];
         }
@@ -405,7 +408,7 @@ double fu_constant_elastic_energy(const fu_model *model, const double *q)
 {
     double total = 0.0, part;
     FU_EACH_CABLE(cable, model) {
-        for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
+        FU_EACH_ELEMENT(k, at, cable) {
             cable->law->energy(fu_element_length(cable, k), q + at, fu_element_constants(cable, k), &part);
             total += part;
         }
@@ -418,8 +421,7 @@ double fu_potential_energy(const fu_model *model, const double *q)
 {
     double total = 0.0;
     FU_EACH_CABLE(cable, model) {
-        const int end = cable->first + (cable->n_elements + 1) * cable->per_node;
-        for (int i = cable->first; i < end; ++i) total -= model->gravity[i] * q[i];
+        for (int i = cable->first; i < fu_cable_end(cable); ++i) total -= model->gravity[i] * q[i];
     }
     return total + fu_bodies_potential_energy(model, q);
 }
@@ -440,16 +442,19 @@ double fu_internal_dissipation(const fu_model *model, const double *q, const dou
 {
     double total = fu_bodies_dissipation(model, q, v), part[FU_MAX_COORDINATES], power[CHUNK];
     FU_EACH_CABLE(cable, model) {
+        int end = 0; /* of the last chunk */
         if (cable->tau <= 0.0 && cable->mass_damping <= 0.0) continue;
-        for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
-            if (cable->tau > 0.0 && k % CHUNK == 0) {
+        FU_EACH_ELEMENT(k, at, cable) {
+            const double mass_damping = fu_piece_of(cable, k)->mass_damping;
+            if (cable->tau > 0.0 && k == end) {
                 const fu_elements of = elements_from(cable, q, v, k);
-                dissipations(cable, chunk(cable, k), &of, power);
+                end += chunk(cable, k, CHUNK);
+                dissipations(cable, end - k, &of, power + CHUNK - (end - k));
             }
-            if (cable->tau > 0.0) total += power[k % CHUNK];
-            if (cable->mass_damping > 0.0) {
+            if (cable->tau > 0.0) total += power[CHUNK - (end - k)];
+            if (mass_damping > 0.0) {
                 cable->kernel->inertia_force(fu_element_mass(cable, k), v + at, part);
-                for (int i = 0; i < cable->coordinates; ++i) total += cable->mass_damping * part[i] * v[at + i];
+                for (int i = 0; i < cable->coordinates; ++i) total += mass_damping * part[i] * v[at + i];
             }
         }
     }

@@ -4,19 +4,27 @@
 
 #include "linear/linear.h"
 
+/* Consecutive elements of a cable with one damping, each of which begins at the node where the one before it ends. */
+typedef struct {
+    int end;             /* number of the element after the last */
+    int first;           /* entry in q of the element 0 if it were of this piece */
+    double tau;          /* Kelvin-Voigt retardation time, s */
+    double mass_damping; /* 1/s */
+} fu_cable_piece;
+
 typedef struct {
     const fu_element_kernels *kernel;
     const fu_law_kernels *law;
     const fu_law_blocks *blocks; /* null if there are none */
-    int n_elements;
+    int n_elements, n_nodes;
     int first;             /* first dof and first entry in q */
     int coordinates;       /* of an element */
     int per_node;          /* coordinates of a node */
     double length;         /* of an element, m; the mean where they differ */
     const double *lengths; /* of the elements, m */
     const double *nodes;   /* arc-lengths of the nodes, m; null where the elements are equal */
-    double tau;            /* Kelvin-Voigt retardation time, s */
-    double mass_damping;   /* 1/s */
+    const fu_cable_piece *pieces;
+    double tau, mass_damping; /* the largest of its pieces */
     const double *m;       /* mass matrix of the first element over nodal vectors */
     int l_stride;          /* from one element's length to the next's: zero for equal elements */
     int m_stride;          /* from one element's mass matrix to the next's: zero for equal elements */
@@ -58,6 +66,32 @@ static inline double fu_element_length(const fu_cable *cable, int element)
 {
     return cable->lengths[(long)element * cable->l_stride];
 }
+
+/* Returns the piece that an element belongs to. */
+static inline const fu_cable_piece *fu_piece_of(const fu_cable *cable, int element)
+{
+    const fu_cable_piece *piece = cable->pieces;
+    while (element >= piece->end) ++piece;
+    return piece;
+}
+
+/* Returns the entry in q of the first of an element's coordinates, which follow one another. */
+static inline int fu_element_entry(const fu_cable *cable, int element)
+{
+    return fu_piece_of(cable, element)->first + element * cable->per_node;
+}
+
+/* Returns the entry in q after the last of a cable. */
+static inline int fu_cable_end(const fu_cable *cable)
+{
+    return cable->first + cable->n_nodes * cable->per_node;
+}
+
+/* Loops over the elements and over the nodes of a cable, with the entry in q of the first coordinate of each. */
+#define FU_EACH_ELEMENT(k, at, cable)                                                                                  \
+    for (int k = 0, at; k < (cable)->n_elements && (at = fu_element_entry(cable, k), 1); ++k)
+#define FU_EACH_NODE(at, cable)                                                                                        \
+    for (int at = (cable)->first; at < fu_cable_end(cable); at += (cable)->per_node)
 
 /* Returns the length of a cable, m. */
 static inline double fu_cable_length(const fu_cable *cable)

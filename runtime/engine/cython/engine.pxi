@@ -54,12 +54,16 @@ cdef extern from * nogil:
     int FU_SIGNAL_TERMS, FU_BAND_GROUP, FU_UNPACKED_FRONT
     int FU_BAND_MORE(int width)
     long FU_BAND_BEYOND(int width)
+    ctypedef struct fu_cable_piece:
+        int end, first
+        double tau, mass_damping
     ctypedef struct fu_cable:
         const fu_element_kernels *kernel
         const fu_law_kernels *law
         const fu_law_blocks *blocks
-        int n_elements, first, coordinates, per_node, l_stride, m_stride, A_stride, dissipation_state, tension_only
+        int n_elements, n_nodes, first, coordinates, per_node, l_stride, m_stride, A_stride, dissipation_state, tension_only
         const double *share
+        const fu_cable_piece *pieces
         double length, tau, mass_damping
         const double *lengths, *nodes, *m, *A
     ctypedef struct fu_matter:

@@ -77,11 +77,11 @@ cdef class Translation(Arrays):
             mesh = cable.mesh
             c.n_elements, c.first, c.length = mesh.n_elements, cable.first, mesh.mean
             c.lengths, c.l_stride = self._doubles(mesh.lengths), 0 if mesh.is_even else 1
-            c.nodes = NULL if mesh.is_even else self._doubles(mesh.node_s)
+            c.nodes = NULL if mesh.is_even else self._doubles(mesh.boundaries)
             c.share = NULL if cable.share is None else self._doubles(cable.share)
             c.tension_only = cable.law.endswith("tension_only")
-            c.tau, c.mass_damping = cable.tau, cable.mass_damping
-            c.per_node = c.kernel.vectors * c.kernel.dim
+            c.per_node, c.n_nodes = c.kernel.vectors * c.kernel.dim, mesh.n_nodes
+            self._pieces(c, cable)
             c.coordinates = c.kernel.nodes * c.per_node
             if c.coordinates > FU_MAX_COORDINATES:
                 raise ValueError(f"{cable.element}: more coordinates than the engine's {FU_MAX_COORDINATES}")
@@ -102,6 +102,15 @@ cdef class Translation(Arrays):
                 self._shape(r, &self.shapes[i], body, tables)
         self.model.n_cables, self.model.n_bodies = len(model.cables), len(model.bodies)
         self.model.cables, self.model.bodies = self.cables, self.bodies
+
+    cdef int _pieces(self, fu_cable *c, cable) except -1:
+        cdef fu_cable_piece *pieces = <fu_cable_piece *>self._memory(len(cable.pieces) * sizeof(fu_cable_piece))
+        cdef int k
+        for k, piece in enumerate(cable.pieces):
+            pieces[k].end, pieces[k].first = piece.end, c.first + piece.doubled * c.per_node
+            pieces[k].tau, pieces[k].mass_damping = piece.tau, piece.mass_damping
+        c.pieces, c.tau, c.mass_damping = pieces, cable.tau, cable.mass_damping
+        return 0
 
     cdef int _shape(self, fu_body *r, fu_shape *h, body, list tables) except -1:
         shape, n = body.shape, body.modes

@@ -9,7 +9,7 @@
 /* Returns the axial strain in the middle of an element, the length of the slope less 1. */
 static double strain(const fu_cable *cable, const double *q, int element)
 {
-    const double l = fu_element_length(cable, element), *e = q + cable->first + (long)element * cable->per_node;
+    const double l = fu_element_length(cable, element), *e = q + fu_element_entry(cable, element);
     const int dim = cable->kernel->dim, n = cable->coordinates / dim;
     double N[FU_MAX_COORDINATES], N_x[FU_MAX_COORDINATES], slope[3] = {0.0, 0.0, 0.0};
     cable->kernel->on_axis(l, 0.5 * l, N, N_x);

@@ -75,7 +75,7 @@ static double *expected_of(const fu_run *run)
 
 static int entry_of(const fu_cable *cable, int k)
 {
-    return cable->first + k * cable->per_node;
+    return fu_element_entry(cable, k);
 }
 
 /* Adds omega x r over an element's vectors, r from the cable's first node. */

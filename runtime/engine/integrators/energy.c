@@ -125,7 +125,7 @@ static void mean_stress(fu_run *run, double stiffness)
     double k[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
     FU_EACH_CABLE(cable, model) {
         const int dim = cable->kernel->dim, n = cable->coordinates / dim;
-        for (int e = 0, at = cable->first; e < cable->n_elements; ++e, at += cable->per_node) {
+        FU_EACH_ELEMENT(e, at, cable) {
             cable->law->step_stiffness(fu_element_length(cable, e), run->now.q + at, run->next.q + at,
                                        fu_element_constants(cable, e), k);
             for (int i = 0; i < n; ++i)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import replace
+
 import numpy as np
 
 from ...base.rotations import rotate
@@ -9,7 +12,7 @@ from ...errors import FunicularError
 from ...parts.cable import Cable
 from ...parts.modal_body import ModalBody
 from ...parts.section import Circle, Rectangle, Section, Tube
-from ...view.animation import CableShape, Quantity
+from ...view.animation import CableShape, Quantity, taken
 from .frames import Frames, along
 
 CABLE_STATIONS = 120
@@ -26,13 +29,18 @@ def stations(cable: Cable) -> np.ndarray:
     return cable.divided(int(np.clip(np.ceil(CABLE_STATIONS / cable.elements), MIN_DIVISIONS, MAX_DIVISIONS)))
 
 
-def cable_shape(frames: Frames, name: str, notes: list[str]) -> CableShape:
-    """Return a cable of the scene; notes: receives failures."""
+def cable_shapes(frames: Frames, name: str, notes: list[str]) -> Iterator[CableShape]:
+    """Yield a cable of the scene, or its pieces; notes: receives failures."""
     cable, s = frames.scene.cables[name], stations(frames.scene.cables[name])
     nodal = frames.value(f"{name}.nodal_vectors")
-    return CableShape(name, s, along(cable, s, nodal), section_direction(cable, s, nodal),
-                      section_data(cable.section), along(cable, s, frames.reference(f"{name}.nodal_vectors")),
-                      tuple(_quantities(frames, name, s, notes)))
+    whole = CableShape(name, s, along(cable, s, nodal), section_direction(cable, s, nodal), {},
+                       along(cable, s, frames.reference(f"{name}.nodal_vectors")),
+                       tuple(_quantities(frames, name, s, notes)))
+    pieces, per_element = cable.uniform_pieces, (len(s) - 1) // cable.elements
+    for k, piece in enumerate(pieces):
+        own = np.arange(per_element * piece.first, per_element * piece.end + 1)
+        shape = whole if len(pieces) == 1 else taken(replace(whole, name=f"{name}, piece {k}"), "P", own, len(s))
+        yield replace(shape, section=section_data(piece.section))
 
 
 def section_direction(cable: Cable, s: np.ndarray, nodal: np.ndarray) -> np.ndarray | None:

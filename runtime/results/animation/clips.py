@@ -18,7 +18,7 @@ from ..recorded import Recorded
 from ..section_forces.balance_limits import out_of_balance
 from . import sources
 from .bodies import body_shape
-from .cables import cable_shape, modal_line, stations
+from .cables import cable_shapes, modal_line, stations
 from .curves import curves, events, thinned
 from .frames import Frames, no_forces
 from .marks import arrow_length, marks, segments
@@ -225,7 +225,7 @@ def _centre(frames: Frames) -> np.ndarray:
 def _clip(frames: Frames, label: str, notes: list[str]) -> Clip:
     """Return the clip of frames; notes: receives failures."""
     size, refs = scene_size(frames), references(frames)
-    cables: list[CableShape] = [cable_shape(frames, name, notes) for name in frames.scene.cables]
+    cables: list[CableShape] = [shape for name in frames.scene.cables for shape in cable_shapes(frames, name, notes)]
     cables += [rope_shape(frames, name) for name in frames.scene.ropes]
     bodies: list[BodyShape] = []
     points: list[Mark] = []

@@ -13,11 +13,16 @@ the section's slopes are those of the shape functions, for which the balance of 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
 import numpy as np
 
 from ...model.model import CableModel
 from ...model.states import positions, spatial
 from ...parts.cable import Cable
+from ...parts.piece import UniformPiece
 from ...parts.validation import LENGTH_TOLERANCE
 from ..shape_functions import of_slopes, on_axis
 from .cable_loads import CableLoads
@@ -73,7 +78,7 @@ def balanced(cable: Cable, model: CableModel, forces: ElementForces, loads: Cabl
     of_inertia = _of_inertia(cable, model, cuts, e, inertia)
     force, moment = force + of_inertia[0], moment + of_inertia[1]
     N = on_axis(model, cuts.element, cuts.x)[0]
-    change = cable.material.density * cable.section.area * _at(N, inertia)
+    change = _per_cut(cable, cuts, lambda piece: piece.material.density * piece.section.area) * _at(N, inertia)
     spreads = [*loads.spreads.get(number, []), *forces.spreads]
     for spread in spreads:
         inside = (cuts.element == spread.element) & (cuts.x > spread.start)
@@ -109,21 +114,37 @@ def _of_inertia(cable: Cable, model: CableModel, cuts: Cuts, e: np.ndarray, a: n
     The Gauss rule is exact for the product of two shape functions.
     """
     places, weights = np.polynomial.legendre.leggauss(2 * sum(set(name) <= set("r_x") for name in model.vectors))
-    density = cable.material.density
-    area, yy, zz = cable.section.mass_moments()[:3]
+    area, yy, zz = (_per_cut(cable, cuts, partial(_inertia, k)) for k in range(3))
     force = moment = np.zeros(3)
     across = [(k, I) for k, (name, I) in enumerate((("r_y", yy), ("r_z", zz)), start=1) if name in model.vectors]
     for place, weight in zip((1 + places) / 2, weights / 2, strict=True):
         x = cuts.x * place
-        N, mass = on_axis(model, cuts.element, x)[0], (weight * density * cuts.x)[..., None]
-        pull = mass * area * _at(N, a)
+        N, part = on_axis(model, cuts.element, x)[0], (weight * cuts.x)[..., None]
+        pull = part * area * _at(N, a)
         force = force + pull
         moment = moment + np.cross(_at(N, e), pull)
         if across:
             slopes = of_slopes(model, cuts.element, x)
         for k, I in across:
-            moment = moment + mass * I * np.cross(_at(slopes[..., k, :], e), _at(slopes[..., k, :], a))
+            moment = moment + part * I * np.cross(_at(slopes[..., k, :], e), _at(slopes[..., k, :], a))
     return force, moment
+
+
+def of_cuts(cable: Cable, element: np.ndarray, of_piece: Callable[[UniformPiece], float]) -> Any:
+    """Return a number of the piece of each cut on elements of these numbers (...); one of a cable of one piece."""
+    pieces = cable.uniform_pieces
+    return of_piece(pieces[0]) if len(pieces) == 1 else cable.of_elements(of_piece)[element]
+
+
+def _inertia(k: int, piece: UniformPiece) -> float:
+    """Return the density times a moment of the section of a piece: mass by length, or rotary inertia."""
+    return piece.material.density * float(piece.section.mass_moments()[k])
+
+
+def _per_cut(cable: Cable, cuts: Cuts, of_piece: Callable[[UniformPiece], float]) -> Any:
+    """Return a number of the piece of each cut, (T or 1, n, 1); one of a cable of one piece."""
+    found = of_cuts(cable, cuts.element, of_piece)
+    return found[..., None] if np.ndim(found) else found
 
 
 def _at(N: np.ndarray, values: np.ndarray) -> np.ndarray:

@@ -175,10 +175,11 @@ class CableLoads:
     def _engine(self) -> Engine:
         return Engine(self.model)
 
-    def _at_points(self, cable: CableModel, n_points: int, compute: Callable[..., tuple[np.ndarray, ...]]
-                   ) -> list[np.ndarray]:
-        """Return compute(n, t, q, v) at the n points of quadrature of a cable, each (T, elements, points, ...)."""
-        shape = cable.n_elements, n_points
+    def _at_points(self, *shape: int, compute: Callable[..., tuple[np.ndarray, ...]]) -> list[np.ndarray]:
+        """Return compute(n, t, q, v) at n points of quadrature, each (T, elements, points, ...).
+
+        shape: (elements, points).
+        """
         each = [compute(shape[0] * shape[1], t, q, v)
                 for t, q, v in zip(self.at.time, self.at.q, self.at.v, strict=True)]
         return [np.stack(values).reshape(self.times, *shape, *values[0].shape[1:])
@@ -206,7 +207,7 @@ class CableLoads:
         on_slope = M = None
         if drag.has_inertia:
             force, on_slope, M = self._at_points(
-                cable, drag.n_points, lambda *at: self._engine.added_mass_densities(number, *at))
+                drag.n_elements, drag.n_points, compute=lambda *at: self._engine.added_mass_densities(number, *at))
             density = density + force
         for k, rule in enumerate(rules_of(cable, drag)):
             turned = None if turning is None else Turning(*(getattr(turning, field.name)[:, k]
@@ -218,7 +219,7 @@ class CableLoads:
         """Yield the wet parts of a cable that surfaces of fluids cut, at one instant: each instant has its own."""
         assert self.times == 1, "wet parts are those of one instant"
         (t,), (q,), (v,) = self.at.time, self.at.q, self.at.v
-        found = self._engine.drag_densities(number, cable.n_elements, t, q, v)
+        found = self._engine.drag_densities(number, drag.n_elements, t, q, v)
         density, on_slope, M = found[:, 4:], None, None
         if len(found) and drag.has_inertia:
             force, on_slope, M = self._engine.added_mass_densities(number, len(found), t, q, v)
@@ -235,8 +236,9 @@ class CableLoads:
             if contact.cable not in self.cables:
                 continue
             cable = self.model.cables[contact.cable]
-            density, = self._at_points(cable, contact.n_points,
-                                       lambda *at, number=number: (self._engine.contact_densities(number, *at),))
+            density, = self._at_points(
+                cable.n_elements, contact.n_points,
+                compute=lambda *at, number=number: (self._engine.contact_densities(number, *at),))
             self.spreads.setdefault(contact.cable, []).extend(
                 rule.spread(self.dim, density[:, k]) for k, rule in enumerate(rules_of(cable, contact)))
 

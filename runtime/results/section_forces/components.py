@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from functools import partial
 
 import numpy as np
 
 from ...parts.cable import Cable
-from .balance import Cuts
+from ...parts.piece import UniformPiece
+from .balance import Cuts, of_cuts
 from .layer import Kink, beside, line_bending
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike  # 9 ms, for type checkers alone
 
 MIN_UNRESOLVED = 1e-4
 """Smallest value of `unresolved` at which bending is corrected."""
@@ -57,17 +55,22 @@ def _split(vector: np.ndarray, tangent: np.ndarray) -> tuple[np.ndarray, np.ndar
     return along, vector - along[..., None] * tangent
 
 
-def unresolved(cable: Cable, force: np.ndarray, length: ArrayLike) -> np.ndarray:
-    """Return the part (T, n) of a kink that elements of a length (m) smear into an arc, 0 to 1.
+def unresolved(cable: Cable, force: np.ndarray, element: np.ndarray) -> np.ndarray:
+    """Return the part (T, n) of a kink that elements of these numbers (T or 1, n) smear into an arc, 0 to 1.
 
     Under an axial force N a cable bends beside a point force over sqrt(E I / N), a cubic over an element of length l.
     N l^2 and 12 E I are the shares of tension and bending in the stiffness against a kink; with their ratio x, the part
     is x^2/(1 + x^2).
     """
-    yy, zz = cable.section.moments()[1:3]
-    bending = 12 * cable.material.youngs_modulus * (yy if cable.dim == 2 else max(yy, zz))
-    x = np.linalg.norm(force, axis=-1) * np.square(length) / bending
+    bending = 12 * of_cuts(cable, element, lambda piece: piece.material.youngs_modulus * float(
+        max(piece.section.moments()[1 : cable.dim])))
+    x = np.linalg.norm(force, axis=-1) * np.square(cable.mesh.each_length(element)) / bending
     return np.asarray(x**2 / (1 + x**2))
+
+
+def _bending(k: int, piece: UniformPiece) -> float:
+    """Return Young's modulus times a moment of the section of a piece."""
+    return piece.material.youngs_modulus * float(piece.section.moments()[k])
 
 
 def taut_bending(cable: Cable, force: np.ndarray, change: np.ndarray, axes: np.ndarray, cuts: Cuts,
@@ -77,16 +80,16 @@ def taut_bending(cable: Cable, force: np.ndarray, change: np.ndarray, axes: np.n
     Zero where the mesh resolves the bending, and in compression.
     """
     pulls = np.einsum("tsi,tsi->ts", force, axes[..., 0, :]) > 0
-    if not np.any(pulls & (unresolved(cable, force, cable.mesh.each_length(cuts.element)) > MIN_UNRESOLVED)):
+    if not np.any(pulls & (unresolved(cable, force, cuts.element) > MIN_UNRESOLVED)):
         return np.zeros_like(force)
-    E, (yy, zz) = cable.material.youngs_modulus, cable.section.moments()[1:3]
+    yy, zz = (of_cuts(cable, cuts.element, partial(_bending, k)) for k in (1, 2))
 
     def stiffness(about: np.ndarray) -> np.ndarray:
-        if cable.dim == 2 or yy == zz:
-            return np.full(force.shape[:2], E * yy)
+        if cable.dim == 2 or np.all(yy == zz):
+            return np.broadcast_to(yy, force.shape[:2])
         by_y, by_z = (np.einsum("tsi,tsi->ts", axes[..., k, :], np.broadcast_to(about, force.shape)) ** 2
                       for k in (1, 2))
-        return np.asarray(E * (zz * by_y + yy * by_z) / _not_zero(by_y + by_z))
+        return np.asarray((zz * by_y + yy * by_z) / _not_zero(by_y + by_z))
 
     moment = line_bending(stiffness, force, change)
     for kink in kinks():
@@ -104,7 +107,7 @@ def balanced_components(cable: Cable, balance: tuple[np.ndarray, np.ndarray], la
     `taut_bending`. Size and direction of the force, and torque, stay.
     """
     force, moment = balance
-    w, tangent = unresolved(cable, force, cable.mesh.each_length(cuts.element)), axes[..., 0, :]
+    w, tangent = unresolved(cable, force, cuts.element), axes[..., 0, :]
     (along, across), (_, bent) = _split(force, tangent), _split(law[0], tangent)
     size, off, by_law = (np.linalg.norm(value, axis=-1) for value in (force, across, bent))
     angle = (1 - w) * np.arctan2(off, np.abs(along)) + w * np.arcsin(np.minimum(by_law, size) / _not_zero(size))

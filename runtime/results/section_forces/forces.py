@@ -61,7 +61,8 @@ def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts, start: np.
     kernel = getattr(kernels_of(cable.library), f"{cable.element}_{cable.kernel_law}_section_forces")
     dim, reference, plane = cable.dim, cable.reference, cable.plane
     nodal_vectors = cable.in_plane(nodal_vectors)
-    S = section_stiffness(cable.stiffness_law, cable.section, cable.material, dim)
+    sections = np.array([section_stiffness(cable.stiffness_law, piece.section, piece.material, dim)
+                         for piece in cable.uniform_pieces])
     shape = len(nodal_vectors), cuts.s.shape[1]
     element, x = np.broadcast_to(cuts.element, shape), np.broadcast_to(cuts.x, shape)
     instants = np.arange(shape[0])[:, None]
@@ -72,6 +73,7 @@ def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts, start: np.
         start = np.concatenate([start[element], start[element + 1]], axis=2).reshape(e.shape)
     e0 = [] if reference is None else [reference[element].reshape(-1, *reference.shape[1:])]
     lengths = cable.mesh.mean if cable.mesh.is_even else cable.mesh.lengths[element].ravel()
+    S = sections[0] if len(sections) == 1 else sections[cable.of_elements(cable.uniform_pieces.index)[element.ravel()]]
     force, moment, axes, strain = (
         values.reshape(*shape, *values.shape[1:])
         for values in about(lambda e: kernel.rows(x.size, lengths, x.ravel(), e, S, *e0), start, e))

@@ -43,7 +43,8 @@ def element_forces(model: Model, at: Instants, loads: CableLoads, cable: int) ->
         spreads = list(loads.added[cable].spreads(a))
     for spread in spreads:
         given[:, spread.element] -= spread.f
-    inertia = a + of.mass_damping * element_coordinates(of, at.v) - _uniform(of, loads.gravity)
+    mass_damping = of.of_elements(lambda piece: piece.mass_damping)[:, None, None]
+    inertia = a + mass_damping * element_coordinates(of, at.v) - _uniform(of, loads.gravity)
     return ElementForces(given, inertia, element_coordinates(of, at.q), spreads)
 
 
@@ -56,25 +57,27 @@ def internal(cable: CableModel, at: Instants) -> np.ndarray:
         vectors = at.start(f"{cable.name}.nodal_vectors")[..., : cable.shape[2]]
         start = np.broadcast_to(np.concatenate([vectors[:, :-1], vectors[:, 1:]], axis=2), e.shape)
 
-    def forces(length: float, e: np.ndarray, v: np.ndarray, A: np.ndarray, start: np.ndarray | None) -> np.ndarray:
+    def forces(length: float, e: np.ndarray, v: np.ndarray, A: np.ndarray, start: np.ndarray | None,
+               tau: float) -> np.ndarray:
         found, = about(lambda e: (cable.law_kernel("elastic_force").rows(len(e), length, e, A),), start, e)
         if moving:
             e = e if start is None else np.ascontiguousarray(start)
             damping = cable.law_kernel("damping_force")
             of_damping = A[: damping.shapes["A"][0]]  # its law has the first of these constants only
-            found = found + damping.rows(len(e), length, e, v, of_damping, cable.tau)
+            found = found + damping.rows(len(e), length, e, v, of_damping, tau)
         return found
 
     if len(cable.A) == 1:
         shape = e.shape
         flat = (-1, *shape[2:])
         f = forces(cable.mesh.mean, e.reshape(flat), v.reshape(flat), cable.A[0],
-                   None if start is None else start.reshape(flat)).reshape(shape)
+                   None if start is None else start.reshape(flat), cable.tau).reshape(shape)
     else:  # constants of each element: a curved stress-free shape, or unequal lengths
-        f = np.stack([forces(cable.mesh.length(k), e[:, k], v[:, k], A, None if start is None else start[:, k])
+        taus = cable.of_elements(lambda piece: piece.tau)
+        f = np.stack([forces(cable.mesh.length(k), e[:, k], v[:, k], A, None if start is None else start[:, k], taus[k])
                       for k, A in enumerate(cable.A)], axis=1)
     if cable.mass_damping > 0:
-        f = f + cable.mass_damping * mass_times(cable, v)
+        f = f + cable.of_elements(lambda piece: piece.mass_damping)[:, None, None] * mass_times(cable, v)
     return f
 
 

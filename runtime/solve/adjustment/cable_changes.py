@@ -22,7 +22,7 @@ from ...model.constants import constants
 from ...model.model import CableModel
 from ...model.states import element_coordinates
 from ...parts.cable import Cable
-from ...parts.section_stiffness import lengths_in_stiffness, section_stiffness
+from ...parts.section_stiffness import lengths_in_stiffness
 
 DIRECTORS = "r_y", "r_z"
 DERIVATIVE_ORDERS = {"r_x": 1, "r_xx": 2}
@@ -52,10 +52,9 @@ def by_length(model: CableModel, cable: Cable, q: np.ndarray) -> np.ndarray:
     if cable.reference is not None or cable.library is not None:
         below, above = (_of_length(model, cable, q, 1 + change) for change in (-DIFFERENCE_STEP, DIFFERENCE_STEP))
         return np.asarray((above - below) / (2 * DIFFERENCE_STEP))
-    law = cable.stiffness_law, cable.section, cable.material, cable.dim
-    S, orders = section_stiffness(*law), lengths_in_stiffness(*law)
+    orders = lengths_in_stiffness(cable.stiffness_law, cable.section, cable.material, cable.dim)
     here = elastic_force(model, model.A, q)
-    beside = elastic_force(model, constants(cable, S=S + np.where(orders > 0, 2.0 - orders, 0.0) * S), q)
+    beside = elastic_force(model, constants(cable, change=lambda S: S + np.where(orders > 0, 2.0 - orders, 0.0) * S), q)
     directed = np.array([name in DIRECTORS for name in model.vectors])
     on_directors = np.where(directed[:, None], here.reshape(model.shape), 0.0).ravel()
     return np.asarray(beside - here + on_directors - _stiffness_times(model, q, ~directed))

@@ -29,7 +29,10 @@ def _distance(scene: SceneData, cable: Cable, drag: Drag | None) -> float:
     if drag is None or not drag.normal:
         return np.inf
     density = min(fluid.density for fluid in scene.fluids_of(drag))
-    mass = LineStiffness.of(cable, scene.dim).mass
-    if drag.added_mass is not None:
-        mass += density * drag.displaced(cable) * float(drag.added_of_cable()[0])
-    return 2 * mass / (density * drag.width(cable) * drag.normal)
+    distances, heaviest = [], float(np.max(LineStiffness.of(cable, scene.dim).mass))
+    for piece in drag.stretches(cable):
+        mass = heaviest
+        if drag.added_mass is not None:
+            mass += density * drag.displaced(piece.section) * float(drag.added_of_cable()[0])
+        distances.append(2 * mass / (density * drag.width(piece.section) * drag.normal))
+    return max(distances)

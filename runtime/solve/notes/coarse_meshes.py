@@ -133,7 +133,7 @@ class _Line:
 
     def note(self, lost: np.ndarray, measure: float, tension: np.ndarray) -> str | None:
         """Return a note where E (elements,) is large beside its measure; tension: (elements,) in N."""
-        stiffness = sum(each.EA * each.part.length for each in self.strains)
+        stiffness = float(self.EA @ self.h)
         if lost.sum() <= max(FORCE_ERROR_LIMIT / MID_ELEMENT_FACTOR * measure, ENERGY_ROUNDING * stiffness):
             return None
         first = np.cumsum([0, *(each.cable.n_elements for each in self.strains)])
@@ -152,7 +152,7 @@ def _advice(of: _Strains, lost: np.ndarray, error: float, tension: np.ndarray) -
     here, h, power, least, corner = mesh.start(k), float(of.h[k]), SMOOTH_SHAPE_POWER, 0.0, ""
     near = [s for s in of.places if here - h < s < here + 2 * h and 0 < s < mesh.total]
     if near and tension[k] > 0:
-        power, least = CORNER_POWER, float(np.sqrt(of.EI / tension[k]))
+        power, least = CORNER_POWER, float(np.sqrt(np.broadcast_to(of.EI, len(of.h))[k] / tension[k]))
         error *= _corner_factor(mesh, near[0]) / (1 + BENDING_LENGTH_FACTOR * least / h)
         corner = f"; what acts at s = {near[0]:.6g} m bends the cable over sqrt(EI/N) = {least:.2g} m"
     if error <= FORCE_ERROR_LIMIT:

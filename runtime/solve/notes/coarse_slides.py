@@ -97,7 +97,7 @@ class CoarseSlides(Note):
             if error <= FORCE_ERROR_LIMIT:
                 continue
             part = self._line(slide)
-            bent = float(np.sqrt(self._stiffness(slide).EI_strong / tension))
+            bent = float(np.sqrt(np.min(self._stiffness(slide).EI_strong) / tension))
             such = f", such as elements={np.ceil(part.length / bent):.0f}" if isinstance(part, Cable) else ""
             notes.append(
                 f'slide "{slide.name}": {part.where} turns there by {np.degrees(angle):.2g} degrees within '

@@ -12,8 +12,10 @@ import numpy as np
 from ...engine import Engine
 from ...model.model import CableModel, Model
 from ...parts.cable import Cable
+from ...parts.material import Material
 from ...parts.rope import Rope
 from ...parts.scene_data import SceneData
+from ...parts.section import Section
 from ...parts.settings import RunSettings
 
 Rows = dict[str, np.ndarray]
@@ -70,20 +72,28 @@ class Note:
 
 class LineStiffness(NamedTuple):
     """EA of a cable or rope in N, its smaller and larger EI in N m², of a planar scene that in its plane, and its mass
-    in kg/m.
+    in kg/m; of a cable of several pieces (elements,) each.
     """
 
-    EA: float
-    EI_weak: float
-    EI_strong: float
-    mass: float
+    EA: Any
+    EI_weak: Any
+    EI_strong: Any
+    mass: Any
 
     @classmethod
     def of(cls, part: Cable | Rope, dim: int) -> LineStiffness:
         """Return those of the section and material of a cable or rope."""
-        E, (area, *bending) = part.material.youngs_modulus, part.section.moments().tolist()
+        pieces = part.uniform_pieces
+        each = [cls._of(piece.section, piece.material, dim) for piece in pieces]
+        if len(each) == 1:
+            return each[0]
+        return cls(*np.repeat(each, [piece.end - piece.first for piece in pieces], axis=0).T)
+
+    @classmethod
+    def _of(cls, section: Section, material: Material, dim: int) -> LineStiffness:
+        E, (area, *bending) = material.youngs_modulus, section.moments().tolist()
         weak, strong = (bending[0],) * 2 if dim == 2 else sorted(bending[:2])
-        return cls(E * area, E * weak, E * strong, part.material.density * area)
+        return cls(E * area, E * weak, E * strong, material.density * area)
 
 
 def element_place(cable: CableModel, k: int) -> str:

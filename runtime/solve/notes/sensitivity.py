@@ -59,14 +59,15 @@ class _Strut(NamedTuple):
     def find(cls, cable: CableModel, part: Cable, dim: int) -> _Strut:
         """Return that of a cable in a scene of a dimension."""
         return cls(cable, part, LineStiffness.of(part, dim),
-                   compressive_stiffness(part.traits.membrane, part.section, part.material))
+                   max(compressive_stiffness(part.traits.membrane, piece.section, piece.material)
+                       for piece in part.uniform_pieces))
 
     def rates(self, q: np.ndarray) -> np.ndarray:
         """Return (times, elements): the rates in 1/s at which elements of the cable buckle."""
         cable, length, (_, EI, _, mass) = self.cable, self.part.length, self.of
         nodal = cable.nodal(q)
         strain = stretches(cable, nodal[:, :-1], nodal[:, 1:], np.arange(cable.n_elements), SIMPSON_RULE) - 1
-        if self.stiffness * -strain.min() <= EI * (np.pi / length) ** 2:  # not even in one wave along the cable
+        if self.stiffness * -strain.min() <= np.min(EI) * (np.pi / length) ** 2:  # not even in one wave along the cable
             return np.zeros(strain.shape)
         N = self.stiffness * np.maximum(-strain, 0.0)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # of a rope without stiffness

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...engine import Engine, straight_rows
 from ...model.model import CableModel, Model
+from ...parts.cable import Cable
 from ...parts.section_stiffness import compressive_stiffness
 from ..linear.condensation import condensed
 from .note import LineStiffness, Note, Rows
@@ -40,10 +41,10 @@ class StraightStruts(Note):
             if straight.any() and len(at := np.flatnonzero(straight & np.append(before, straight[:-1]))):
                 # at two times: else something bends it
                 shortening = 1 - np.linalg.norm(np.diff(r[at], axis=1), axis=2) / cable.mesh.lengths
-                stiffness = compressive_stiffness(part.traits.membrane, part.section, part.material)
-                forces = stiffness * shortening.max(axis=1)
+                forces = (_compressive_stiffness(part) * shortening).max(axis=1)
                 k, force = at[np.argmax(forces)], float(forces.max())
-                bearable = LineStiffness.of(part, 3).EI_weak / cable.mesh.total**2  # a cantilever buckles at 2.47 times
+                bearable = np.min(LineStiffness.of(part, 3).EI_weak) / cable.mesh.total**2
+                # a cantilever buckles at 2.47 times what counts as bearable
                 if force >= bearable and (worst is None or force > worst[0]):
                     worst = [force, float(rows["time"][k]), rows["q"][k].tolist(), rows["s"][k].tolist()]
             self.found[cable.name] = [bool(straight[-1]), worst]
@@ -66,6 +67,12 @@ class StraightStruts(Note):
                              f"{'s lower' if buckles > 1 else ' lowers'} its energy): nothing in the scene bends it. "
                              "Draw it slightly bent, or add a small force across it")
         return notes
+
+
+def _compressive_stiffness(part: Cable) -> np.ndarray:
+    """Return (elements,): the axial stiffness in compression of each element, in N."""
+    membrane = part.traits.membrane
+    return part.of_elements(lambda piece: compressive_stiffness(membrane, piece.section, piece.material))
 
 
 def _straight(r: np.ndarray, before: bool) -> np.ndarray:

@@ -82,4 +82,4 @@ def _rates(cable: CableModel, of: LineStiffness, nodal: np.ndarray, ratio: np.nd
     tension = of.EA * middle_strain(cable, nodal) * k2 / of.mass
     square = np.where(ratio < MAX_CURVATURE_RATIO, stiffness * (1 / np.maximum(ratio, 1e-3) - 1) - tension, 0.0)
     damping = cable.tau * stiffness / 2
-    return np.sqrt(np.maximum(square, 0.0) + damping**2) - damping
+    return np.asarray(np.sqrt(np.maximum(square, 0.0) + damping**2) - damping)

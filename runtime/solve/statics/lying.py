@@ -43,7 +43,8 @@ def lying(scene: SceneData, model: Model, q: np.ndarray) -> list[Lying]:
         part = scene.contacts[contact.name]
         if contact.cable < 0 or scene.surfaces[part.b].geometry.word in BED_SHAPES:
             continue
-        thick = max(contact.radius, float(np.sqrt(scene.cables[part.a].section.moments()[0] / np.pi)))
+        thick = max(contact.radius, float(np.sqrt(
+            min(piece.section.area for piece in scene.cables[part.a].uniform_pieces) / np.pi)))
         on = np.flatnonzero(distances(model, scene, contact, q[None]).ravel() <= contact.radius + GAP_TOLERANCE * thick)
         nodes = model.cables[contact.cable].n_elements + 1
         if len(on):

@@ -224,10 +224,12 @@ def _softest(problem: StaticProblem) -> dict[int, float]:
     found = {}
     load = float(np.abs(problem.load_vector()[problem.weight == 1.0]).sum())
     for k, (model, cable) in enumerate(zip(problem.model.cables, problem.scene.cables.values(), strict=True)):
-        S = section_stiffness(cable.stiffness_law, cable.section, cable.material, cable.dim)
-        if S.shape not in ((2,), (3,)):  # EA, EI, and EA of the upper modes of an assumed strain
+        sections = np.array([section_stiffness(cable.stiffness_law, piece.section, piece.material, cable.dim)
+                             for piece in cable.uniform_pieces])
+        if sections.shape[1:] not in ((2,), (3,)):  # EA, EI, and EA of the upper modes of an assumed strain
             continue
-        least = max(load, MIN_AXIAL_STIFFNESS_RATIO * S[1] / float(model.mesh.lengths.min()) ** 2) / S[0]
+        EA, EI = sections[:, 0].min(), sections[:, 1].max()
+        least = max(load, MIN_AXIAL_STIFFNESS_RATIO * EI / float(model.mesh.lengths.min()) ** 2) / EA
         if least < 1.0:
             found[k] = least
     return found

@@ -18,6 +18,8 @@ from ...model.drags import DragModel
 from ...model.loads import GAUSS, DeadLoadModel
 from ...model.model import Model
 from ...model.unknowns import as_supports_leave
+from ...parts.cable import Cable
+from ...parts.section import Section
 from .single_string import rest_between
 from .static_problem import StaticProblem
 from .string_nodes import SmoothTie, StringNodes, rests
@@ -135,7 +137,7 @@ def _add_drag(model: Model, drag: DragModel, q: np.ndarray, p: float, force: np.
     f = densities(model, drag, np.zeros(1), q[None], np.zeros((1, model.n_dof)))[0][0, ..., : model.dim]
     f = p * f * np.broadcast_to(drag.weights, f.shape[:2])[:, :, None]
     share, at = (1 + GAUSS[0]) / 2, cable.vectors.index("r")
-    own = cable.nodal(force)
+    own = cable.nodal(force)[drag.first : drag.first + drag.n_elements + 1]
     own[:-1, at] += np.einsum("egd,g->ed", f, 1 - share)
     own[1:, at] += np.einsum("egd,g->ed", f, share)
 
@@ -169,11 +171,14 @@ class _Line:
         self.ties, self.clamped = nodes.smooth_ties(group), nodes.clamped(group, q)
         self.order = np.arange(self.n)
 
+    def _link(self, node: int) -> int:
+        """Return the number of the link of its cable that begins at a cable's node."""
+        return (node - int(self.nodes.first[self.nodes.cable[node]])) * self.parts
+
     def _beside(self, node: int, side: int) -> tuple[int, float] | None:
         """Return the string node next to a cable's node, towards its end (side 1) or start (-1), and the link length.
         """
-        k = int(np.searchsorted(self.group, self.nodes.cable[node]))
-        at = (node - int(self.nodes.first[self.group[k]])) * self.parts
+        k, at = int(np.searchsorted(self.group, self.nodes.cable[node])), self._link(node)
         if not 0 <= at + side < len(self.along[k]):
             return None
         return int(self.along[k][at + side]), float(self.lengths[k][at if side == 1 else at - 1])
@@ -189,8 +194,8 @@ class _Line:
         r[self.at], fixed[self.at] = self.q[self.nodes.r[self.own]], self.nodes.fixed[self.own]
         load = self._load(force)
         links = np.concatenate([np.stack([each[:-1], each[1:]], axis=1) for each in self.along])
-        axial = np.concatenate([np.full(len(length), part.material.youngs_modulus * part.section.moments()[0])
-                                for part, length in zip(self.drawn, self.lengths, strict=True)])
+        axial = np.concatenate([np.repeat(self._stiffness(part, lambda section: section.area), self.parts)
+                                for part in self.drawn])
         made = Strings(r, fixed, load, links, np.concatenate(self.lengths), axial, *self._bends(),
                        *self._planes(fixed, load))
         if made.width > 2:
@@ -198,6 +203,11 @@ class _Line:
             self.order = reverse_cuthill_mckee((beside + beside.T).tocsr(), symmetric_mode=True)
             made = made.renumbered(self.order)
         return made
+
+    @staticmethod
+    def _stiffness(part: Cable, size: Callable[[Section], float]) -> np.ndarray:
+        """Return (elements,): Young's modulus times a size of the section of each element of a cable."""
+        return part.of_elements(lambda piece: piece.material.youngs_modulus * size(piece.section))
 
     def _load(self, force: np.ndarray) -> np.ndarray:
         """Return (n, dim): forces on the cables' nodes, distributed over the links of the adjacent elements."""
@@ -214,29 +224,31 @@ class _Line:
 
     def _bends(self) -> tuple[np.ndarray, ...]:
         """Return bends, factors, natural and bending of `Strings`: at inner nodes, smooth ties and clamps."""
-        stiffness = {int(c): part.material.youngs_modulus * min(part.section.moments()[1:3]) * (not part.is_curved)
-                     for c, part in zip(self.group, self.drawn, strict=True)}
-        nodes, sides, bending = [], [], []
+        stiffness = {int(c): np.repeat(self._stiffness(part, lambda section: min(section.moments()[1:3])), self.parts)
+                     * (not part.is_curved) for c, part in zip(self.group, self.drawn, strict=True)}
+        nodes, sides, bends = [], [], []
         for c, along, length in zip(self.group, self.along, self.lengths, strict=True):
             nodes.append(np.stack([along[:-2], along[1:-1], along[2:]], axis=1))
             sides.append(np.stack([length[:-1], length[1:]], axis=1))
-            bending.append(np.full(len(along) - 2, stiffness[int(c)]))
+            bends.append(np.minimum(stiffness[int(c)][:-1], stiffness[int(c)][1:]))
         for tie in self.ties:
             (before, one), (after, other) = self._across(tie)
             nodes.append(np.array([[before, self._number(tie.first), after]]))
             sides.append(np.array([[one, other]]))
-            bending.append(np.array([sum(stiffness[int(self.nodes.cable[k])] for k in (tie.first, tie.second)) / 2]))
+            bends.append(np.array([sum(stiffness[int(self.nodes.cable[k])].mean() for k in (tie.first, tie.second))
+                                   / 2]))
         length = np.concatenate(sides)
         mean = length.mean(axis=1)
         first, last = 1 / (length[:, 0] * mean), 1 / (length[:, 1] * mean)
         found = [np.concatenate(nodes), np.stack([first, -first - last, last], axis=1),
-                 np.zeros((len(mean), self.model.dim)), np.concatenate(bending) * mean]
+                 np.zeros((len(mean), self.model.dim)), np.concatenate(bends) * mean]
         for node, tangent in self.clamped.items():
             for side in (1, -1):
                 if (beside := self._beside(node, side)) is not None:
                     other, l = beside
+                    bending = stiffness[int(self.nodes.cable[node])][self._link(node) - (side == -1)]
                     half = ([[self._number(node), other, other]], [[-2 / l**2, 2 / l**2, 0.0]],
-                            [side * 2 / l * tangent], [stiffness[int(self.nodes.cable[node])] * l / 2])
+                            [side * 2 / l * tangent], [bending * l / 2])
                     found = [np.concatenate([given, more]) for given, more in zip(found, half, strict=True)]
         return tuple(found)
 

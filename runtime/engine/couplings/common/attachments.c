@@ -109,8 +109,8 @@ static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_
     const fu_cable *cable = &model->cables[on->cable];
     const int n = cable->coordinates / dim;
     const int element = on_slide ? state->segment[on->slide] : on->element;
-    const double *e = state->q + cable->first + element * cable->per_node;
-    const double *v = state->v + cable->first + element * cable->per_node;
+    const double *e = state->q + fu_element_entry(cable, element);
+    const double *v = state->v + fu_element_entry(cable, element);
     double every[9 * FU_MAX_COORDINATES];
     if (on_slide)
         cable->kernel->slopes(fu_element_length(cable, element),
@@ -154,7 +154,7 @@ int fu_attachment_coordinates(const fu_model *model, const fu_attachment *on, co
     if (on->cable < 0) return 0;
     const fu_cable *cable = &model->cables[on->cable];
     const int element = on->slide >= 0 ? state->segment[on->slide] : on->element, n = cable->coordinates;
-    for (int i = 0; i < n; ++i) at[i] = cable->first + element * cable->per_node + i;
+    for (int i = 0; i < n; ++i) at[i] = fu_element_entry(cable, element) + i;
     if (on->slide < 0) return n;
     at[n] = fu_extra(model, model->slides[on->slide].base.unknown);
     return n + 1;
@@ -187,7 +187,7 @@ static void point_of(const fu_model *model, const fu_attachment *on, const fu_st
     }
     if (on->cable >= 0 && on->slide < 0) {
         const fu_cable *cable = &model->cables[on->cable];
-        const int first = cable->first + on->element * cable->per_node;
+        const int first = fu_element_entry(cable, on->element);
         for (int d = 0; d < dim; ++d)
             for (int k = 0; k < n / dim; ++k) out->P[d * n + k * dim + d] = on->N[k];
         fu_interpolate(dim, n, on->N, state->q + first, out->p);
@@ -357,7 +357,7 @@ static void add_stiffness_of_s(const fu_model *model, const fu_attachment *on, c
 {
     const fu_cable *cable = &model->cables[on->cable];
     const int dim = model->dim, vectors = cable->coordinates / dim, s = n - 1;
-    const double *e = state->q + cable->first + state->segment[on->slide] * cable->per_node;
+    const double *e = state->q + fu_element_entry(cable, state->segment[on->slide]);
     for (int k = 0; k < 2; ++k)
         for (int d = 0; d < dim; ++d) {
             const double pull = g[k * dim + d], *S_x = w->S[k] + vectors, *S_xx = w->S[k] + 2 * vectors;

@@ -9,7 +9,7 @@ static int element_of(const fu_model *model, const fu_attachment *on)
 {
     if (on->cable < 0 || on->slide >= 0 || on->rope || on->body >= 0 || on->node >= 0) return -1;
     const fu_cable *cable = &model->cables[on->cable];
-    return cable->first + on->element * cable->per_node;
+    return fu_element_entry(cable, on->element);
 }
 
 void fu_point_at(const fu_model *model, const fu_attachment *on, const fu_state *state, double p[3], double *v,

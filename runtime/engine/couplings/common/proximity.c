@@ -38,8 +38,8 @@ double fu_most_of_cable(const fu_cable *cable, const double *to, const double *f
     for (int k = 0; k < vectors; ++k) {
         double most = 0.0;
         if (cable->share[k] == 0.0) continue;
-        for (int node = 0; node <= cable->n_elements; ++node) {
-            const int first = cable->first + node * cable->per_node + k * dim;
+        FU_EACH_NODE(node, cable) {
+            const int first = node + k * dim;
             double square = 0.0;
             for (int d = 0; d < dim; ++d) {
                 const double change = to[first + d] - (from ? from[first + d] : 0.0);

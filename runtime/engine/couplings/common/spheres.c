@@ -11,7 +11,7 @@ const fu_clearance fu_no_clearance = {.gap = -INFINITY};
 double fu_sphere_about(const fu_cable *cable, const double *q, int element, double middle[3])
 {
     const int dim = cable->kernel->dim, vectors = cable->kernel->vectors;
-    const double *first = q + cable->first + element * cable->per_node, *last = first + cable->per_node;
+    const double *first = q + fu_element_entry(cable, element), *last = first + cable->per_node;
     double square = 0.0, reach = 0.0;
     for (int d = 0; d < dim; ++d) {
         middle[d] = 0.5 * (first[d] + last[d]);

@@ -34,7 +34,7 @@ fu_friction_mark *fu_contact_mark(const fu_contact *contact, const fu_state *sta
 int fu_contact_first(const fu_model *model, const fu_contact *contact, int element)
 {
     const fu_cable *cable = &model->cables[contact->cable];
-    return cable->first + element * cable->per_node;
+    return fu_element_entry(cable, element);
 }
 
 /* Returns whether a sphere about an element's first node, larger than necessary but cheap, is off the surface by more

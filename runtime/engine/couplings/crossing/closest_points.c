@@ -32,7 +32,7 @@ static void point_of_cable(const fu_cable *cable, const double *q, const double 
     double every[9 * FU_MAX_COORDINATES];
     out->element = element_at(cable, within);
     const double length = fu_element_length(cable, out->element), start = fu_cable_start(cable, out->element);
-    const int first = cable->first + out->element * cable->per_node;
+    const int first = fu_element_entry(cable, out->element);
     cable->kernel->on_axis(length, within - start, out->N, out->N_x);
     cable->kernel->slopes(length, within - start, every);
     for (int i = 0; i < n && beyond != 0.0; ++i) out->N[i] += beyond * out->N_x[i];
@@ -107,8 +107,8 @@ void fu_line_bends_at(const fu_model *model, const fu_crossing *crossing, const 
     for (int line = 0; line < dim - 1 && crossing->cables[line] >= 0; ++line) {
         const fu_cable *cable = &model->cables[crossing->cables[line]];
         const int n = cable->coordinates / dim, element = points->line[line].element;
-        const double *q = state->q + cable->first + element * cable->per_node,
-                     *v = state->v + cable->first + element * cable->per_node;
+        const double *q = state->q + fu_element_entry(cable, element),
+                     *v = state->v + fu_element_entry(cable, element);
         const double s = points->s[line];
         if (s < 0.0 || s > fu_cable_length(cable)) continue; /* straight beyond the ends */
         cable->kernel->slopes(fu_element_length(cable, element), s - fu_cable_start(cable, element), every);
@@ -277,7 +277,7 @@ void fu_line_moves_at(const fu_model *model, const fu_crossing *crossing, int li
         memset(out->P, 0, sizeof(double) * (size_t)(dim * n));
         memset(out->T, 0, sizeof(double) * (size_t)(dim * n));
         for (int i = 0; i < n; ++i) {
-            out->at[i] = cable->first + point->element * cable->per_node + i;
+            out->at[i] = fu_element_entry(cable, point->element) + i;
             out->P[i % dim * n + i] = point->N[i / dim];
             out->T[i % dim * n + i] = point->N_x[i / dim];
         }

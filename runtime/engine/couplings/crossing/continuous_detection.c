@@ -103,8 +103,9 @@ static double path_of_line(const line_approach *of, int line, const double *mean
     for (int k = 0; k < cable->kernel->vectors; ++k) {
         const double share = cable->share ? cable->share[k] : k ? cable->length : 1.0;
         double most = 0.0;
-        for (int node = 0; node <= cable->n_elements && share != 0.0; ++node) {
-            const int at = cable->first + node * cable->per_node + k * dim;
+        if (share == 0.0) continue;
+        FU_EACH_NODE(node, cable) {
+            const int at = node + k * dim;
             most = fmax(most, fu_longest_path(dim, now->q + at, now->v + at, next->q + at, next->v + at,
                                               k ? still : mean, of->h));
         }
@@ -118,8 +119,7 @@ static void mean_velocity(const line_approach *of, double mean[3])
 {
     const fu_cable *cable = &of->model->cables[of->crossing->cables[0]];
     for (int d = 0; d < of->model->dim; ++d)
-        for (int node = 0; node <= cable->n_elements; ++node)
-            mean[d] += of->now->v[cable->first + node * cable->per_node + d] / (cable->n_elements + 1);
+        FU_EACH_NODE(node, cable) mean[d] += of->now->v[node + d] / cable->n_nodes;
 }
 
 double fu_crossing_detect_within(const fu_model *model, const fu_crossing *crossing, const fu_state *now,

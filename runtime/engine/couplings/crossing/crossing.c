@@ -103,7 +103,7 @@ static void motion_of_cable(const fu_model *model, int cable, const fu_line_poin
                             double rate, fu_point_motion *out)
 {
     const int dim = model->dim, n = model->cables[cable].coordinates,
-              first = model->cables[cable].first + point->element * model->cables[cable].per_node;
+              first = fu_element_entry(&model->cables[cable], point->element);
     fu_element_motion(model, first, n, point->N, rate, out);
     memset(out->at.T, 0, sizeof(double) * (size_t)(dim * n));
     memset(out->by + 2 * dim * n, 0, sizeof(double) * (size_t)(3 * dim * n));

@@ -152,8 +152,8 @@ static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const f
     const fu_cable *cable = &model->cables[drag->cable];
     const int dim = model->dim;
     const fu_state *states[3] = {at->now, at->next, at->middle};
-    for (int e = 0; e < cable->n_elements; ++e) {
-        const int first = cable->first + e * cable->per_node;
+    for (int e = drag->first; e < drag->first + drag->n_elements; ++e) {
+        const int first = fu_element_entry(cable, e);
         fu_drag_points points;
         fu_drag_points_over(model, drag, e, at->now->q + first, at->next->q + first, &points);
         for (int from = 0; from < points.n; from += FU_BLOCK_POINTS) {

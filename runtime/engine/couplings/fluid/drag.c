@@ -258,6 +258,8 @@ static const fu_field fields[] = {
     FLOW_VECTOR(origin),
     {"axes", FU_REAL, offsetof(fu_drag, flow.axes), 9, sizeof(double), NULL},
     FU_FIELD(fu_drag, cable, FU_INTEGER, 0),
+    FU_FIELD(fu_drag, first, FU_INTEGER, 0),
+    FU_FIELD(fu_drag, n_elements, FU_INTEGER, 0),
     FU_SPAN_FIELDS(fu_drag, on),
     FU_FIELD_ARRAY(fu_drag, coefficients, FU_REAL),
     FU_FIELD_ARRAY(fu_drag, lift, FU_REAL),

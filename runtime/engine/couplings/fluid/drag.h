@@ -52,6 +52,7 @@ typedef struct {
     const fu_drag_kernels *kernel;
     fu_flow flow;
     int cable;              /* -1: at a point of a body, or along a span */
+    int first, n_elements;  /* elements of the cable on which it acts */
     fu_span_elements on;    /* the span of a rope; without kernels: none */
     double coefficients[3]; /* as the kernel takes them */
     double lift[2];         /* of a cable, arguments of the kernel: no lift if the first is zero */
@@ -70,7 +71,7 @@ typedef struct {
     double added[9]; /* added mass: of a cable across and along it, kg/m; of a body in its axes (dim x dim), kg */
     int n_points;    /* of quadrature on an element */
     int stride;      /* points from one element's tables to the next's: 0 for equal elements */
-    const double *weights, *N, *N_x, *N_chord; /* weights in m; shape functions, their slopes; of a beam's foil those of
+    const double *weights, *N, *N_x, *N_chord; /* from the first element on, weights in m; shape functions, their slopes; of a beam's foil those of
                                                   the director along the chord */
     fu_attachment attachments[1];
 } fu_drag;

@@ -84,10 +84,10 @@ void fu_drag_visit(const fu_model *model, const fu_drag *drag, const double *q, 
     fu_drag_block block; /* set member by member: most of its memory is of larger elements */
     block.points = &points;
     block.constants = &constants;
-    for (int e = 0; e < cable->n_elements; ++e) {
+    for (int e = drag->first; e < drag->first + drag->n_elements; ++e) {
         block.element = e;
-        block.first = cable->first + e * cable->per_node;
-        if (e == 0 || !points_alike) fu_drag_points_on(model, drag, e, q + block.first, &points);
+        block.first = fu_element_entry(cable, e);
+        if (is_first || !points_alike) fu_drag_points_on(model, drag, e, q + block.first, &points);
         if (loop->has_matrix) memset(K, 0, sizeof(double) * (size_t)(all * all));
         for (block.from = 0; block.from < points.n; block.from += FU_BLOCK_POINTS) {
             if (is_first || !points_alike || points.n > FU_BLOCK_POINTS)

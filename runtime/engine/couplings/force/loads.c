@@ -42,7 +42,7 @@ static void on_element(const fu_model *model, const fu_load *load, double t, con
     const double length = fu_element_length(cable, element);
     for (int d = 0; d < 3; ++d) c[d] = model->load_fraction * load->c[d];
     out->n = cable->coordinates;
-    out->first = cable->first + element * cable->per_node;
+    out->first = fu_element_entry(cable, element);
     if (load->kind == FU_CABLE_FORCE) {
         double N[FU_MAX_COORDINATES], N_x[FU_MAX_COORDINATES];
         cable->kernel->on_axis(length, x, N, N_x);

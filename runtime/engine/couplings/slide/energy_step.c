@@ -27,7 +27,7 @@ static step_end end_of(const fu_model *model, const fu_slide *slide, const fu_eq
     const fu_cable *cable = &model->cables[slide->cable];
     out.length = fu_element_length(cable, element);
     out.x = state->s[j] - fu_element_start(model, step->now, j, element);
-    out.e = state->q + cable->first + element * cable->per_node;
+    out.e = state->q + fu_element_entry(cable, element);
     return out;
 }
 

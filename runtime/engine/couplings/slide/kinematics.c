@@ -24,7 +24,7 @@ static const double no_arm[3];
 static void look_at_cable(const fu_model *model, const fu_state *state, int j, slide_view *view)
 {
     const fu_cable *cable = &model->cables[model->slides[j].cable];
-    const int at = cable->first + state->segment[j] * cable->per_node;
+    const int at = fu_element_entry(cable, state->segment[j]);
     view->length = fu_element_length(cable, state->segment[j]);
     view->x = state->s[j] - fu_element_start(model, state, j, state->segment[j]);
     view->e = state->q + at;
@@ -101,9 +101,10 @@ int fu_slide_coordinates(const fu_model *model, const fu_state *state, int j, in
     const fu_slide *slide = &model->slides[j];
     const fu_span_elements *on = &slide->on;
     const fu_cable *cable = slide->cable < 0 ? 0 : &model->cables[slide->cable];
-    const int per_node = cable ? cable->per_node : on->kernel->coordinates / FU_SPAN_ENDS;
     const int n = fu_slide_element_coordinates(model, j), of_nodes = cable ? n : on->kernel->coordinates;
-    for (int i = 0; i < of_nodes; ++i) at[i] = (cable ? cable->first : on->first) + state->segment[j] * per_node + i;
+    const int segment = state->segment[j], first = cable ? fu_element_entry(cable, segment)
+                                                         : on->first + segment * on->kernel->coordinates / FU_SPAN_ENDS;
+    for (int i = 0; i < of_nodes; ++i) at[i] = first + i;
     for (int i = of_nodes; i < n; ++i) at[i] = on->s[i - of_nodes];
     const int all = n + fu_attachment_coordinates(model, &slide->rider, state, at + n);
     at[all] = fu_extra(model, slide->base.unknown);
