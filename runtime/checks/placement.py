@@ -59,14 +59,14 @@ def node_at(scene: SceneData, name: str, place: str, s: float, keyword: str = "s
     node = cable.node_at(s)
     if node is not None:
         return name, node
-    nodes = cable.node_s
+    nodes = cable.mesh.boundaries
     if len(nodes) > 12:  # of a long list only the two neighbours
         right = int(np.searchsorted(nodes, s))
         nodes = nodes[right - 1 : right + 1]
     raise SceneError(
         place,
         f"{keyword} must be a node of the cable, got {show(s, 'm')}",
-        f"nodes {'near it ' if len(cable.node_s) > 12 else ''}are at " + ", ".join(f"{s:.9g}" for s in nodes) + " m")
+        f"nodes {'near it ' if cable.elements > 11 else ''}are at " + ", ".join(f"{s:.9g}" for s in nodes) + " m")
 
 
 def placed_support(scene: SceneData, support: Support) -> Support:

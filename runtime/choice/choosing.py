@@ -70,7 +70,8 @@ def _keeps(cable: Cable, free: str) -> bool:
 def _free(scene: S, name: str, asked: Cable, free: str) -> Free:
     """Return the possible models of a cable of a scene; asked: the cable as the user gave it."""
     cable = scene.cables[name]
-    given = asked.elements if free == "unset" and not asked.is_open else None
+    keeps_mesh = asked.pieces is not None or (free == "unset" and not asked.is_open)
+    given = asked.elements if keeps_mesh else None
     base = coarsest(scene, cable)
     if not base and given is None:
         raise SceneError(cable.where, f"no mesh of up to {MAX_COARSEST_ELEMENTS} equal elements has nodes at all its "

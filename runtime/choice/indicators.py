@@ -39,28 +39,32 @@ def shear_compliance(cable: Cable, run: Run) -> float:
     kappa = np.cross(r_x, r_xx) / np.sum(r_x * r_x, axis=-1, keepdims=True)
     if cable.is_curved:
         kappa = kappa - kappa[:1]
-    bending = cable.material.youngs_modulus * cable.section.second_moment_about_z
+    bending = max(piece.material.youngs_modulus * piece.section.second_moment_about_z for piece in cable.uniform_pieces)
     shear = _shear_stiffness(cable)
     slope = np.diff(kappa, axis=1) / (cable.length / PARTS)
     middle = (kappa[:, 1:] + kappa[:, :-1]) / 2
     energy = float(np.sum(middle * middle))
     if energy == 0.0:
         return 0.0
-    rotary = shear / (cable.material.youngs_modulus * float(cable.section.moments()[0]))
+    rotary = shear / min(piece.material.youngs_modulus * piece.section.area for piece in cable.uniform_pieces)
     return float(bending / shear * float(np.sum(slope * slope)) / energy * (1 + rotary))
 
 
 def _shear_stiffness(cable: Cable) -> float:
-    """Return kGA of a cable's section in N, in the more flexible direction."""
-    _, shear_modulus = cable.material.lame()
-    return float(min(cable.section.shear_factors(cable.material.poisson())) * shear_modulus
-                 * cable.section.moments()[0])
+    """Return kGA of a cable's section in N, in the more flexible direction, the least of its pieces."""
+    return min(min(piece.section.shear_factors(piece.material.poisson())) * piece.material.lame()[1]
+               * piece.section.area for piece in cable.uniform_pieces)
 
 
 def softened(scene: S, names: Collection[str]) -> S:
     """Return a scene in which some cables, of cable elements, have `BENDING_RATIO` of their bending stiffness."""
     def soft(cable: Cable) -> Cable:
-        return cable.remade({"section": _soft(type(cable.section))(**cable.section.entries())})
+        if cable.pieces is None:
+            return cable.remade({"section": softer(cable.section)})
+        return cable.remade({"pieces": [piece.remade({"section": softer(piece.section)}) for piece in cable.pieces]})
+
+    def softer(section: Section) -> Section:
+        return _soft(type(section))(**section.entries())
 
     return scene.with_parts(soft(part) if isinstance(part, Cable) and part.name in names else part
                             for part in scene.parts())
@@ -117,8 +121,8 @@ def _wave_number(cable: Cable, run: Run, s: np.ndarray, shears: bool) -> float:
     stretch = np.linalg.norm(along(cable, run[f"{cable.name}.nodal_vectors"], PARTS, 1), axis=-1).mean(axis=1)
     stretch = (stretch[1:] + stretch[:-1]) / 2
     travel = np.abs(np.diff(s.reshape(len(run.time), -1)[:, 0]))
-    bending = cable.material.youngs_modulus * min(cable.section.second_moment_about_z,
-                                                  cable.section.second_moment_about_y)
+    bending = min(piece.material.youngs_modulus * float(min(piece.section.moments()[1:3]))
+                  for piece in cable.uniform_pieces)
     beyond = np.nan_to_num(np.maximum(excess(cable, stretch, travel / np.diff(run.time)), 0.0))
     if shears:
         left = 1.0 - beyond / _shear_stiffness(cable)

@@ -91,7 +91,8 @@ def along(cable: Cable, nodal_vectors: np.ndarray, parts: int = STATIONS, deriva
     s = np.arange(parts + 1) / parts * cable.length
     element = cable.mesh.element_at(s * (1 + 1e-12))
     N = shapes(cable, element, s - cable.mesh.each_start(element), derivative)
-    vectors = np.concatenate([nodal_vectors[:, element], nodal_vectors[:, element + 1]], axis=2)
+    node = cable.mesh.first_node(element)
+    vectors = np.concatenate([nodal_vectors[:, node], nodal_vectors[:, node + 1]], axis=2)
     found: np.ndarray = np.einsum("pk,tpkd->tpd", N, vectors.reshape(len(nodal_vectors), parts + 1, -1, 3))
     return found
 

@@ -131,8 +131,8 @@ def _planar(part: Part, seen: Part, plane: Plane | None, following: Mapping[int,
         return planar_cable(part)
     height = np.cross((0.0, 0.0, 1.0), seen.axes_at(0.0)[0])
     made = planar_cable(seen)
-    return Cable(**part.entries() | {"element": made.element, "section": made.section,
-                                     "up": tuple(plane.out(height).tolist())})
+    sections = {name: value for name, value in made.entries().items() if name in ("section", "pieces")}
+    return Cable(**part.entries() | sections | {"element": made.element, "up": tuple(plane.out(height).tolist())})
 
 
 def planar_element(cable: Cable) -> str | None:
@@ -146,8 +146,10 @@ def planar_element(cable: Cable) -> str | None:
 def planar_cable(cable: Cable) -> Cable:
     """Return the cable of planar elements. Raises SceneError, and ValueError where it has no planar form."""
     entries = {name: value for name, value in cable.entries().items() if name != "up"}
-    section = cable.section if _height_is_in_plane(cable) else turned(cable.section)
-    return Cable(**entries | {"element": planar_element(cable), "section": section})
+    if not _height_is_in_plane(cable):
+        entries |= ({"section": turned(cable.section)} if cable.pieces is None else
+                    {"pieces": [piece.remade({"section": turned(piece.section)}) for piece in cable.pieces]})
+    return Cable(**entries | {"element": planar_element(cable)})
 
 
 def turned(section: Section) -> Section | None:
@@ -189,14 +191,15 @@ def _reasons_of_cable(cable: Cable, plane: str) -> Iterator[str]:
     if planar_element(cable) is None:
         yield f"{cable.element} has no planar form"
         return
-    if not cable.kind_of_element.is_cable and cable.material.poisson_ratio and cable.stiffness_law != "structural":
+    ratio = max((piece.material.poisson_ratio or 0.0 for piece in cable.uniform_pieces), key=abs)
+    if not cable.kind_of_element.is_cable and ratio and cable.stiffness_law != "structural":
         yield (f'the law "{cable.law}" is of three-dimensional stress in {cable.element}, of plane stress in '
-               f"{planar_element(cable)}, which differ with a Poisson ratio of {cable.material.poisson_ratio:g}")
+               f"{planar_element(cable)}, which differ with a Poisson ratio of {ratio:g}")
     if not cable.kind_of_element.is_cable:
         axes = cable.axes_at(cable.node_s)
         if np.any(np.abs(axes[:, 1, 2] * axes[:, 2, 2]) > PARALLEL_SINE):
             yield f"up is neither in {plane} nor across it: bending leaves the plane"
-        elif not _height_is_in_plane(cable) and turned(cable.section) is None:
+        elif not _height_is_in_plane(cable) and any(turned(piece.section) is None for piece in cable.uniform_pieces):
             yield f"up lies across {plane}, where the section's width bends: draw its height in the plane"
 
 

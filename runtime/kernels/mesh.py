@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,12 +18,15 @@ if TYPE_CHECKING:
 class Mesh:
     """The elements of a cable.
 
-    lengths: (1,) in m of equal elements, else (elements,); given: (nodes,) arc-lengths in m of unequal ones.
+    lengths: (1,) in m of equal elements, else (elements,); given: (elements + 1,) arc-lengths in m of the ends of
+    unequal ones; doubled: elements, in their order, that begin at a node of their own at the place of the last node of
+    the element before them.
     """
 
     n_elements: int
     lengths: np.ndarray
     given: np.ndarray | None = None
+    doubled: tuple[int, ...] = ()
 
     @classmethod
     def even(cls, length: float, n_elements: int) -> Mesh:
@@ -30,9 +34,9 @@ class Mesh:
         return cls(n_elements, np.array([length]))
 
     @classmethod
-    def of_nodes(cls, node_s: np.ndarray) -> Mesh:
-        """Return the mesh with nodes at arc-lengths (nodes,) in m, increasing from 0."""
-        return cls(len(node_s) - 1, np.diff(node_s), node_s)
+    def of_nodes(cls, node_s: np.ndarray, doubled: tuple[int, ...] = ()) -> Mesh:
+        """Return the mesh with elements between arc-lengths (elements + 1,) in m, increasing from 0."""
+        return cls(len(node_s) - 1, np.diff(node_s), node_s, doubled)
 
     @property
     def is_even(self) -> bool:
@@ -42,12 +46,42 @@ class Mesh:
     @property
     def n_nodes(self) -> int:
         """Return the number of its nodes."""
-        return self.n_elements + 1
+        return self.n_elements + 1 + len(self.doubled)
 
     @property
     def boundaries(self) -> np.ndarray:
         """Return (elements + 1,): arc-lengths of the ends of the elements, in m."""
-        return self.node_s
+        return self.lengths[0] * np.arange(self.n_elements + 1) if self.given is None else self.given
+
+    @cached_property
+    def boundary_of_node(self) -> np.ndarray:
+        """Return (nodes,): the number of the boundary at which each node is."""
+        return np.insert(np.arange(self.n_elements + 1), np.array(self.doubled, dtype=int), self.doubled)
+
+    @property
+    def nodes_of_boundaries(self) -> np.ndarray:
+        """Return (elements + 1,): the number of a node at each end of the elements, of two the first."""
+        return np.unique(self.boundary_of_node, return_index=True)[1]
+
+    @cached_property
+    def first(self) -> Any:
+        """Return the index, of an array of nodes, of the first nodes of the elements."""
+        return np.delete(np.arange(self.n_nodes), [*self._lasts, self.n_nodes - 1]) if self.doubled else slice(0, -1)
+
+    @cached_property
+    def last(self) -> Any:
+        """Return the index, of an array of nodes, of the second nodes of the elements."""
+        return self.first + 1 if self.doubled else slice(1, None)
+
+    @property
+    def _lasts(self) -> list[int]:
+        """Return the last nodes of elements before a doubled node."""
+        return [element + k for k, element in enumerate(self.doubled)]
+
+    def first_node(self, element: ArrayLike) -> np.ndarray:
+        """Return the numbers (...) of the first nodes of elements (...)."""
+        element = np.asarray(element)
+        return element + np.searchsorted(self.doubled, element, side="right") if self.doubled else element
 
     @property
     def total(self) -> float:
@@ -67,7 +101,7 @@ class Mesh:
     @property
     def node_s(self) -> np.ndarray:
         """Return (nodes,): arc-lengths of the nodes, in m."""
-        return self.lengths[0] * np.arange(self.n_elements + 1) if self.given is None else self.given
+        return self.boundaries[self.boundary_of_node] if self.doubled else self.boundaries
 
     def length(self, element: int) -> float:
         """Return the length of an element, in m."""
@@ -93,8 +127,8 @@ class Mesh:
         found = s // self.lengths[0] if self.given is None else np.searchsorted(self.given, s, side="right") - 1
         return np.asarray(np.minimum(np.maximum(found, 0), self.n_elements - 1)).astype(int)
 
-    def nearest_node(self, s: ArrayLike) -> np.ndarray:
-        """Return the numbers (...) of the nodes nearest to arc-lengths s (...)."""
+    def nearest_boundary(self, s: ArrayLike) -> np.ndarray:
+        """Return the numbers (...) of the ends of elements nearest to arc-lengths s (...)."""
         s = np.asarray(s, dtype=float)
         if self.given is None:
             return np.asarray(np.clip(np.rint(s / self.lengths[0]), 0, self.n_elements).astype(int))
@@ -116,4 +150,4 @@ class Mesh:
     def divided(self, parts: int) -> np.ndarray:
         """Return (parts elements + 1,): arc-lengths of nodes and of equidistant points of each element, m."""
         at, nodes = np.arange(parts * self.n_elements + 1) / parts, np.arange(self.n_elements + 1)
-        return np.asarray(np.interp(at, nodes, self.node_s))
+        return np.asarray(np.interp(at, nodes, self.boundaries))

@@ -12,6 +12,7 @@ import numpy as np
 from ..base.deferred import dataclass
 from ..checks.frames import draws_section
 from ..parts.attachment import Attachment
+from ..parts.cable import Cable
 from ..parts.modal_body import ModalBody
 from ..parts.rigid_body import largest_moment
 from ..parts.scene_data import SceneData
@@ -121,11 +122,20 @@ class ModelBuilder:
             return self._on_rope(attachment.on, attachment.arc_length)
         found = self._on_cable(attachment.on, attachment.arc_length, axes, up,
                                draws_section(self.scene.cables[attachment.on]))
-        found.element, x = self.element(attachment.on, attachment.arc_length)
-        model = self.cables[found.cable]
-        length = model.mesh.length(found.element)
+        return self._at(found, *self.element(attachment.on, attachment.arc_length))
+
+    def on_element(self, cable: Cable, element: int, end: int, axes: np.ndarray) -> AttachmentModel:
+        """Return an attachment to the tangent at the first end, 0, or the last one, 1, of an element of a cable."""
+        x = end * cable.mesh.length(element)
+        found = self._on_cable(cable.name, cable.mesh.start(element) + x, self._axes(axes), None, section=False)
+        return self._at(found, element, x)
+
+    def _at(self, found: AttachmentModel, element: int, x: float) -> AttachmentModel:
+        """Return an attachment to a cable with its place, x in m in an element."""
+        model, found.element = self.cables[found.cable], element
+        length = model.mesh.length(element)
         found.N = model.kernel("on_axis")(length, x)[0]
-        if axes is not None:
+        if found.axes is not None:
             slopes = model.kernel("slopes")(length, x)
             found.S = np.array([slopes[k, 0] if k >= 0 else 0 * found.N for k in found.slopes])
         return found

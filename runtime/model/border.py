@@ -63,11 +63,10 @@ class _Border:
         shared: dict[int, list[int]] = {}
         elements: list[np.ndarray] = []
         for cable in model.cables:
-            per_node = cable.shape[1] * cable.shape[2]
             if not np.any(self._unknowns(cable.coordinates) >= model.n_band):
                 continue
             for k in range(cable.n_elements):
-                at = self._unknowns(slice(cable.first + k * per_node, cable.first + (k + 2) * per_node))
+                at = self._unknowns(cable.dofs_of(k))
                 for unknown in at[at >= model.n_band]:
                     shared.setdefault(int(unknown), []).append(len(elements))
                 elements.append(at)
@@ -198,5 +197,4 @@ class _Border:
         if end.cable < 0:
             return _Place()
         cable = self.model.cables[end.cable]
-        per_node = cable.shape[1] * cable.shape[2]
-        return self._place(slice(cable.first + end.element * per_node, cable.first + (end.element + 2) * per_node))
+        return self._place(cable.dofs_of(end.element))

@@ -42,7 +42,7 @@ def build(scene: SceneData, supplied: bool = False) -> Model:
     nodes = {model.name: _nodes(model, scene.cables[model.name].where, vectors)
              for model, vectors in zip(cables, nodal, strict=True)}
     builder = ModelBuilder(scene, cables, ropes, bodies)
-    reduction = supports(scene, nodes, builder.signals.add).reduce(n_flexible, _elements(nodes), attached(scene))
+    reduction = supports(scene, nodes, builder.signals.add).reduce(n_flexible, elements_of(cables), attached(scene))
     couplings = [model for kind in COUPLINGS for model in kind.models(builder)]
     n_extra, n_multipliers = number(couplings)
     n_of_bodies = sum(dofs_of(body, dim) for body in bodies)
@@ -80,10 +80,10 @@ def build(scene: SceneData, supplied: bool = False) -> Model:
     return model
 
 
-def _elements(nodes: dict[str, list[Node]]) -> np.ndarray:
-    """Return (elements, 2): the first dof and the number of dofs of each element of these nodes, by cable."""
-    return np.array([(node.first, 2 * node.vectors.size) for each in nodes.values() for node in each[:-1]],
-                    dtype=int).reshape(-1, 2)
+def elements_of(cables: list[CableModel]) -> np.ndarray:
+    """Return (elements, 2): the first dof and the number of dofs of each element, by cable."""
+    found = [cable.dofs_of(k) for cable in cables for k in range(cable.n_elements)]
+    return np.array([(dofs.start, dofs.stop - dofs.start) for dofs in found], dtype=int).reshape(-1, 2)
 
 
 def _joined(*arrays: np.ndarray) -> np.ndarray:

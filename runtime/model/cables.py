@@ -32,7 +32,8 @@ class CableArrays:
         """Return its model, whose coordinates begin at ``first``."""
         cable, mesh = self.cable, self.cable.mesh
         vectors = cable.kind_of_element.nodal_vectors
-        pieces = tuple(CablePiece(piece.end, piece.material.damping_time, piece.material.mass_damping)
+        pieces = tuple(CablePiece(piece.end, piece.material.damping_time, piece.material.mass_damping,
+                                  len([at for at in mesh.doubled if at <= piece.first]))
                        for piece in cable.uniform_pieces)
         return CableModel(cable.name, cable.element, cable.kernel_law, mesh, first, pieces, self._mass, self._constants,
                           (mesh.n_nodes, len(vectors), cable.dim), vectors, cable.library)
@@ -65,7 +66,9 @@ class CableArrays:
                           for piece, lengths in cable.lengths_by_piece() for length in lengths])
         if len(units) == 1:
             return _fixed(np.repeat(np.tile(units[0], cable.mesh.n_nodes), cable.dim))
-        longer = np.maximum(np.vstack([units[:1], units]), np.vstack([units, units[-1:]]))
+        longer, mesh = np.zeros((cable.mesh.n_nodes, len(vectors))), cable.mesh
+        longer[mesh.first] = units
+        longer[mesh.last] = np.maximum(longer[mesh.last], units)
         return _fixed(np.repeat(longer, cable.dim))
 
     def gravity(self, gravity: np.ndarray) -> np.ndarray:
@@ -100,8 +103,8 @@ def cable_gravity(cable: Cable, gravity: np.ndarray) -> np.ndarray:
     each = np.array([kernel(length, piece.material.density, piece.section.mass_moments(), gravity).reshape(
                      2, vectors, cable.dim) for piece, lengths in cable.lengths_by_piece() for length in lengths])
     weight = np.zeros((cable.mesh.n_nodes, vectors, cable.dim))
-    weight[:-1] += each[:, 0]
-    weight[1:] += each[:, 1]
+    weight[cable.mesh.first] += each[:, 0]
+    weight[cable.mesh.last] += each[:, 1]
     return weight.ravel()
 
 

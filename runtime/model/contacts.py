@@ -243,15 +243,15 @@ def _drawn(model: ContactModel, builder: ModelBuilder) -> np.ndarray:
     """Return (n, 3): where the points on a cable are drawn."""
     cable = builder.cables[model.cable]
     vectors = builder.scene.cables[cable.name].nodal_vectors
-    both = np.concatenate([vectors[:-1], vectors[1:]], axis=1)
+    both = np.concatenate([vectors[cable.mesh.first], vectors[cable.mesh.last]], axis=1)
     N = np.broadcast_to(model.N, (cable.n_elements, *model.N.shape[1:]))
     return np.asarray(np.einsum("egk,ekd->egd", N, both).reshape(-1, 3))
 
 
 def _arc_lengths(mesh: Mesh, x: np.ndarray) -> np.ndarray:
     """Return (elements points,): arc-lengths of points on all elements, in m."""
-    starts = mesh.node_s[:-1, None]
-    return np.asarray(starts + np.diff(mesh.node_s)[:, None] * (1 + x) / 2).ravel()
+    starts = mesh.boundaries[:-1, None]
+    return np.asarray(starts + np.diff(mesh.boundaries)[:, None] * (1 + x) / 2).ravel()
 
 
 def hard_contact_models(builder: ModelBuilder) -> Iterator[HardContactModel]:

@@ -94,7 +94,8 @@ def outside_tables(model: Model, q: np.ndarray) -> list[str]:
             continue
         if drag.cable >= 0:
             cable = model.cables[drag.cable]
-            r = cable.nodal(q)[drag.first : drag.first + drag.n_elements + 1, 0]
+            nodes = cable.mesh.first_node(np.arange(drag.first, drag.first + drag.n_elements))
+            r = cable.nodal(q)[[*nodes, nodes[-1] + 1], 0]
         elif drag.coordinates is not None:
             r = drag.coordinates.places(q)
         else:

@@ -11,6 +11,7 @@ import numpy as np
 from ..base.deferred import dataclass
 from ..checks.frames import has_section, joint_axes, slide_axes
 from ..kernels.libraries import kernels_of
+from ..parts.cable import Cable
 from ..parts.joint import DRIVEN, Joint
 from ..parts.locations import point_of
 from ..parts.slide import Slide
@@ -23,7 +24,8 @@ class JointModel(CouplingModel):
     """A joint between two ends; base: its distance or angle without the signal that drives it, m or rad.
 
     of_points: its equations depend on the two points alone, not on rotations. slide: the slide whose rider's axes it
-    holds to the cable; reversed: its first end is b of the part.
+    holds to the cable; joins_pieces: whether it joins the tangents of two pieces of a cable; reversed: its first end is
+    b of the part.
     """
 
     reports_cost: ClassVar[bool] = True
@@ -32,7 +34,13 @@ class JointModel(CouplingModel):
     base: float
     of_points: bool
     slide: str | None = None
+    joins_pieces: bool = False
     reversed: bool = False
+
+    @property
+    def is_of_scene(self) -> bool:
+        """Return whether it is a joint of the scene."""
+        return self.slide is None and not self.joins_pieces
 
     @property
     def rows(self) -> int:
@@ -52,12 +60,26 @@ class JointModel(CouplingModel):
 
 
 def joint_models(builder: ModelBuilder) -> Iterator[JointModel]:
-    """Yield the joints: first those between a rider's axes and its cable, then those of the scene."""
+    """Yield the joints: first those between a rider's axes and its cable, then those of the scene, then those of the
+    tangents of pieces of a cable whose slopes differ in length.
+    """
     for k, slide in enumerate(builder.scene.slides.values()):
         if slide.frame != "point":
             yield _frame_joint(builder, slide, k)
     for joint in builder.scene.joints.values():
         yield _joint(builder, joint)
+    for cable in builder.scene.cables.values():
+        if not cable.kind_of_element.director:
+            yield from (_joint_of_tangents(builder, cable, element) for element in cable.mesh.doubled)
+
+
+def _joint_of_tangents(builder: ModelBuilder, cable: Cable, element: int) -> JointModel:
+    """Return the joint that keeps the tangents of two pieces parallel, the second of which begins with this element."""
+    tangent_last = np.eye(3)[:, [1, 2, 0]]
+    ends = [builder.on_element(cable, own, at_end, tangent_last) for own, at_end in ((element - 1, 1), (element, 0))]
+    model = _model(cable.name, "aligned" if cable.dim == 3 else "locked", cable.dim, ends, -1, 0.0)
+    model.joins_pieces = True
+    return model
 
 
 def _joint(builder: ModelBuilder, joint: Joint) -> JointModel:

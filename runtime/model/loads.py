@@ -144,13 +144,12 @@ class LoadBuilder:
             return
         model = self.cables[self.builder.cable_index[cable]]
         dim = model.shape[2]
-        total = np.zeros(int(np.prod(model.shape)))
+        total = np.zeros(model.coordinates.stop)
         for element, x, weight in points:
-            at = element * model.shape[1] * dim
             N = model.kernel("on_axis")(model.mesh.length(element), x)[0]
-            total[at : at + len(N) * dim] += weight * np.outer(N, value[:dim]).ravel()
+            total[model.dofs_of(element)] += weight * np.outer(N, value[:dim]).ravel()
         used = np.flatnonzero(total)
-        self.dead.append(DeadLoadModel(number, list(model.first + used), list(total[used]), type="dead load"))
+        self.dead.append(DeadLoadModel(number, list(used), list(total[used]), type="dead load"))
 
     def _turning(self, kind: str, number: int, cable: str, points: Iterable[tuple[int, float, float]],
                  value: np.ndarray) -> None:

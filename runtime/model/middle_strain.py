@@ -57,15 +57,17 @@ def middle_strain(cable: CableModel, nodal_vectors: np.ndarray) -> np.ndarray:
 
 def strains_at(cable: CableModel, nodal_vectors: np.ndarray, parts: Sequence[float]) -> np.ndarray:
     """Return (parts, T, elements): the axial strain at fractions of the length of each element."""
-    return slope_lengths(slopes(cable, *parts), nodal_vectors[:, :-1], nodal_vectors[:, 1:]) - 1.0
+    return slope_lengths(slopes(cable, *parts), nodal_vectors[:, cable.mesh.first],
+                         nodal_vectors[:, cable.mesh.last]) - 1.0
 
 
-def slopes_at(nodal_vectors: np.ndarray, shapes: np.ndarray) -> np.ndarray:
+def slopes_at(cable: CableModel, nodal_vectors: np.ndarray, shapes: np.ndarray) -> np.ndarray:
     """Return (parts, T, elements, dim): the sums of the vectors of each element's nodes, weighted as `slopes` returns.
 
     Products of whole arrays take a third of the time of `numpy.einsum` for few elements.
     """
-    first, last, vectors = nodal_vectors[:, :-1], nodal_vectors[:, 1:], nodal_vectors.shape[-2]
+    mesh, vectors = cable.mesh, nodal_vectors.shape[-2]
+    first, last = nodal_vectors[:, mesh.first], nodal_vectors[:, mesh.last]
     N, counted = shapes.reshape(len(shapes), 1, *shapes.shape[1:], 1), np.any(shapes, axis=(0, 1))
     ends = (sum(N[..., offset + k, :] * end[..., k, :] for k in range(vectors) if counted[offset + k])
             for offset, end in ((0, first), (vectors, last)))

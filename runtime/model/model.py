@@ -91,6 +91,11 @@ class CableModel:
         return self.mesh.n_elements
 
     @property
+    def ends_of_elements(self) -> list[int] | None:
+        """Return (elements + 1): the number of a node at each end of the elements; None of all nodes."""
+        return self.mesh.nodes_of_boundaries.tolist() if self.mesh.doubled else None
+
+    @property
     def tau(self) -> float:
         """Return the largest Kelvin-Voigt retardation time of its pieces, s."""
         return max(piece.tau for piece in self.pieces)
@@ -109,6 +114,12 @@ class CableModel:
     def coordinates(self) -> slice:
         """Return the range of its coordinates in q, v and the dofs."""
         return slice(self.first, self.first + math.prod(self.shape))
+
+    def dofs_of(self, element: int) -> slice:
+        """Return the range of the coordinates of an element in q, v and the dofs."""
+        size = math.prod(self.shape[1:])
+        first = self.first + int(self.mesh.first_node(element)) * size
+        return slice(first, first + 2 * size)
 
     def nodal(self, q: np.ndarray) -> np.ndarray:
         """Return its part of coordinates, rates or numbers of dofs (..., n) as (..., nodes, vectors, dim)."""

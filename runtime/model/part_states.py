@@ -164,7 +164,7 @@ def _slides(model: Model, at: States, kind: str, asked: Asked) -> Values:
 def _joints(model: Model, at: States, kind: str, asked: Asked) -> Values:
     """Return the results of the scene's joints, without those that hold the axes of slides."""
     return {joint.name: joint_state(joint, at.outputs(kind, k)) for k, joint in enumerate(model.joints)
-            if joint.slide is None and asked(joint.name)}
+            if joint.is_of_scene and asked(joint.name)}
 
 
 def _point_forces(model: Model, at: States, kind: str, asked: Asked) -> Values:

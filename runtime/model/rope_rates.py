@@ -280,9 +280,8 @@ def _motion_on_cable(model: Model, attachment: AttachmentModel) -> tuple[np.ndar
     """Return the velocity (dim,) of an attachment to a cable in m/s, and in the plane with axes the angular velocity of
     its section in rad/s.
     """
-    cable, size = model.cables[attachment.cable], len(attachment.N) * model.dim
-    start = cable.first + attachment.element * size // 2
-    vectors, rates = (each[start : start + size].reshape(-1, model.dim) for each in (model.q, model.v))
+    dofs = model.cables[attachment.cable].dofs_of(attachment.element)
+    vectors, rates = (each[dofs].reshape(-1, model.dim) for each in (model.q, model.v))
     velocity = attachment.N @ rates
     if model.dim == 3 or attachment.axes is None:
         return velocity, 0.0

@@ -193,8 +193,7 @@ def _frame_on_cable(model: Model, attachment: AttachmentModel, q: np.ndarray) ->
 def _vectors_of(model: Model, attachment: AttachmentModel, q: np.ndarray) -> np.ndarray:
     """Return (time, vectors, dim): the nodal vectors of the element of an attachment to a cable."""
     cable, n = model.cables[attachment.cable], len(attachment.N)
-    start = cable.first + attachment.element * cable.shape[1] * model.dim
-    found: np.ndarray = q[:, start : start + n * model.dim].reshape(len(q), n, model.dim)
+    found: np.ndarray = q[:, cable.dofs_of(attachment.element)].reshape(len(q), n, model.dim)
     return found
 
 
@@ -205,8 +204,9 @@ def element_coordinates(cable: CableModel, values: np.ndarray, element: np.ndarr
     nodal = cable.nodal(values)
     if element is not None:
         rows = np.arange(len(values))
-        return np.concatenate([nodal[rows, element], nodal[rows, element + 1]], axis=1)
-    return np.concatenate([nodal[:, :-1], nodal[:, 1:]], axis=2)
+        node = cable.mesh.first_node(element)
+        return np.concatenate([nodal[rows, node], nodal[rows, node + 1]], axis=1)
+    return np.concatenate([nodal[:, cable.mesh.first], nodal[:, cable.mesh.last]], axis=2)
 
 
 def positions(cable: CableModel) -> np.ndarray:
@@ -221,8 +221,8 @@ def distances(model: Model, scene: SceneData, contact: ContactModel, q: np.ndarr
     """
     cable, surface = model.cables[contact.cable], scene.surfaces[scene.contacts[contact.name].b]
     elements = np.arange(cable.n_elements) if elements is None else elements
-    vectors = cable.nodal(q)
-    both = np.concatenate([vectors[:, elements], vectors[:, elements + 1]], axis=2)
+    vectors, node = cable.nodal(q), cable.mesh.first_node(elements)
+    both = np.concatenate([vectors[:, node], vectors[:, node + 1]], axis=2)
     N = np.broadcast_to(contact.N, (cable.n_elements, *contact.N.shape[1:]))[elements]
     points = spatial(np.einsum("egk,tekd->tegd", N, both))
     if surface.on is not None:

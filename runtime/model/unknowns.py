@@ -174,17 +174,20 @@ class Supports:
                 self.rows[dof] = Row(prescribed=[Prescribed(signal, float(along[d]), 0.0, float(across[d]),
                                                             float(turned[d]))])
 
-    def join(self, master: Node, slave: Node, rigid: bool) -> None:
-        """Join the positions of two nodes; rigid: also the slopes, or the rotations of the sections, as drawn."""
-        for dof, of in zip(slave.dofs("r"), master.dofs("r"), strict=True):
-            self.rows[dof] = self._combined({of: 1.0})
-        if rigid:
+    def join(self, master: Node, slave: Node, rotation: str) -> None:
+        """Join the positions of two nodes; "rigid": also the slopes, or the rotations of the sections, as drawn;
+        "section": also the directors.
+        """
+        for name in ["r", *(master.directors if rotation == "section" else [])]:
+            for dof, of in zip(slave.dofs(name), master.dofs(name), strict=True):
+                self.rows[dof] = self._combined({of: 1.0})
+        if rotation == "rigid":
             for name, rows in _shared(master, slave).items():
                 for dof, combination in zip(slave.dofs(name), rows, strict=True):
                     self.rows[dof] = self._combined(combination)
 
-    def tie_nodes(self, ties: list[tuple[Node, Node, bool]], supported: list[Node]) -> None:
-        """Join the nodes of ties (node, node, rigid), starting from the supported nodes."""
+    def tie_nodes(self, ties: list[tuple[Node, Node, str]], supported: list[Node]) -> None:
+        """Join the nodes of ties (node, node, rotation), starting from the supported nodes."""
         if not ties:
             return
         done = {node.first for node in supported}
@@ -196,10 +199,10 @@ class Supports:
             done.add(root.first)
             while waiting:
                 node = waiting.pop()
-                for a, b, rigid in ties:
+                for a, b, rotation in ties:
                     for master, slave in ((a, b), (b, a)):
                         if master.first == node.first and slave.first not in done:
-                            self.join(master, slave, rigid)
+                            self.join(master, slave, rotation)
                             done.add(slave.first)
                             waiting.append(slave)
 
@@ -307,8 +310,10 @@ def supports(scene: SceneData, nodes: dict[str, list[Node]], signal: Callable[[S
         return nodes[cable][scene.cables[cable].node(s)]
 
     supported = _support_nodes(made, scene, at, signal)
-    made.tie_nodes([(at(tie.cable, tie.s), at(tie.to, tie.at), tie.rotation == "rigid")
-                    for tie in scene.ties.values()], supported)
+    joints = [(nodes[cable.name][node - 1], nodes[cable.name][node], "section") for cable in scene.cables.values()
+              for node in cable.mesh.first_node(cable.mesh.doubled).tolist() if cable.mesh.doubled]
+    made.tie_nodes([*joints, *((at(tie.cable, tie.s), at(tie.to, tie.at), tie.rotation)
+                               for tie in scene.ties.values())], supported)
     return made
 
 

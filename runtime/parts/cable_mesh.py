@@ -75,9 +75,9 @@ def mesh_of(nodes: tuple[float, ...], length: float) -> Mesh:
 
 
 @lru_cache(maxsize=32)
-def mesh_of_pieces(pieces: tuple[Piece, ...]) -> Mesh:
-    """Return the mesh of the elements of pieces."""
-    return Mesh.of_nodes(np.array(boundaries(pieces)))
+def mesh_of_pieces(pieces: tuple[Piece, ...], doubled: tuple[int, ...]) -> Mesh:
+    """Return the mesh of the elements of pieces; doubled: see `Mesh`."""
+    return Mesh.of_nodes(np.array(boundaries(pieces)), doubled)
 
 
 def refined(nodes: tuple[float, ...], elements: int) -> tuple[float, ...]:

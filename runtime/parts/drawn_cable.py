@@ -17,7 +17,7 @@ from . import cable_drawing, cable_mesh, curves
 from .cable_fields import CableFields
 from .piece import UniformPiece
 from .plane import Plane
-from .section_stiffness import kernel_law
+from .section_stiffness import kernel_law, section_stiffness
 from .validation import LENGTH_TOLERANCE, Vector
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ class DrawnCable(Fields):
     def mesh(self) -> Mesh:
         """Return its mesh. Raises SceneError where its elements are still to be chosen."""
         if self.pieces is not None:
-            return cable_mesh.mesh_of_pieces(self.pieces)
+            return cable_mesh.mesh_of_pieces(self.pieces, self.doubled)
         if self.nodes is None:
             return cable_mesh.even_mesh(self.length / self.elements, self.elements)
         return cable_mesh.mesh_of(self.nodes, self.length)
@@ -102,6 +102,17 @@ class DrawnCable(Fields):
             return pieces[0]
         element = self.element_at(s)
         return next(piece for piece in pieces if element < piece.end)
+
+    @property
+    def doubled(self) -> tuple[int, ...]:
+        """Return the elements that begin at a node of their own, see `Mesh`: those of a piece whose strain under the
+        forces of the piece before it is another one.
+        """
+        pieces = self.uniform_pieces
+        stiffness = [section_stiffness(self.stiffness_law, piece.section, piece.material, self.dim) for piece in pieces]
+        counted = slice(0, 1) if self.kind_of_element.is_cable else slice(None)
+        return tuple(piece.first for piece, before, own in zip(pieces[1:], stiffness, stiffness[1:], strict=False)
+                     if not np.array_equal(before[counted], own[counted]))
 
     @property
     def kernel_law(self) -> str:
@@ -230,7 +241,7 @@ class DrawnCable(Fields):
         """Return (nodes, vectors, 3): the rates of `nodal_vectors` at the start, those of a rigid motion."""
         names = self.kind_of_element.nodal_vectors
         if not any((*self.velocity, *self.angular_velocity)):
-            return np.zeros((self.elements + 1, len(names), 3))
+            return np.zeros((self.mesh.n_nodes, len(names), 3))
         vectors, place = self.nodal_vectors, names.index("r")
         vectors[:, place] -= vectors[0, place]
         rates = cross(self.angular_velocity, vectors)
@@ -244,15 +255,15 @@ class DrawnCable(Fields):
         if not self.traits.takes_shape:
             return None
         rest = self.in_plane(self.rest_nodal_vectors)
-        return np.concatenate([rest[:-1], rest[1:]], axis=1)
+        return np.concatenate([rest[self.mesh.first], rest[self.mesh.last]], axis=1)
 
     @property
     def rest_nodal_vectors(self) -> np.ndarray:
         """Return (nodes, vectors, 3): the nodal vectors of the stress-free cable, with start and direction as drawn."""
         start = self._shape.point(0.0)
         if self.rest == "straight":
-            axes = np.broadcast_to(self.axes, (self.elements + 1, 3, 3))
-            return self._vectors(start + self.node_s[:, None] * axes[:, 0], axes, 1.0, np.zeros((self.elements + 1, 3)))
+            axes = np.broadcast_to(self.axes, (self.mesh.n_nodes, 3, 3))
+            return self._vectors(start + self.node_s[:, None] * axes[:, 0], axes, 1.0, np.zeros((len(axes), 3)))
         drawn = self.node_s * self.stretch
         return self._vectors(start + (self._shape.point(drawn) - start) / self.stretch, self.axes_at(self.node_s), 1.0,
                              self.stretch * self._shape.curvature(drawn))
@@ -298,8 +309,10 @@ class DrawnCable(Fields):
             at = length * node / elements  # as in `node_s`
         else:
             mesh = self.mesh
-            node = round(s / length * elements) if mesh.is_even else int(mesh.nearest_node(s))
-            at = self.node_s[node] if 0 <= node <= elements else 0.0
+            node = round(s / length * elements) if mesh.is_even else int(mesh.nearest_boundary(s))
+            at = mesh.boundaries[node] if 0 <= node <= elements else 0.0
+            if mesh.doubled:
+                node, elements = int(mesh.first_node(node)) - (node in mesh.doubled), mesh.n_nodes - 1
         return node if 0 <= node <= elements and abs(at - s) <= LENGTH_TOLERANCE * length else None
 
     def element_at(self, s: float) -> int:

@@ -25,7 +25,7 @@ def slack_elements(state: Recorded | RestState, cable: Cable | str) -> xarray.Da
     of = next(each for each in state.model.cables if each.name == name)
     vectors = state[f"{name}.nodal_vectors"]
     slack = middle_strain(of, vectors if over_time else vectors[None]) < -SLACK_STRAIN
-    s = of.mesh.node_s
+    s = of.mesh.boundaries
     middle = {"units": "m", "long_name": "middle of the element"}
     coords: dict[str, Any] = {"s": ("element", (s[:-1] + s[1:]) / 2, middle)}
     if not isinstance(state, RestState):

@@ -64,7 +64,8 @@ def along(cable: Cable, s: np.ndarray, nodal_vectors: np.ndarray, slope: int | N
     nodal_vectors: (..., nodes, vectors, 3); slope: as of `weights`.
     """
     element, N = weights(cable, s, slope)
-    pairs = np.concatenate([nodal_vectors[..., element, :, :], nodal_vectors[..., element + 1, :, :]], axis=-2)
+    node = cable.mesh.first_node(element)
+    pairs = np.concatenate([nodal_vectors[..., node, :, :], nodal_vectors[..., node + 1, :, :]], axis=-2)
     return np.asarray(np.einsum("nk,...nkd->...nd", N, pairs, optimize=True))
 
 
@@ -75,7 +76,8 @@ def moving(cable: Cable, s: np.ndarray, nodal_vectors: np.ndarray, slope: int | 
     """
     element, N = weights(cable, s, slope)
     instants = np.arange(len(s)) if len(nodal_vectors) > 1 else np.zeros(len(s), dtype=int)
-    pairs = np.concatenate([nodal_vectors[instants, element], nodal_vectors[instants, element + 1]], axis=1)
+    node = cable.mesh.first_node(element)
+    pairs = np.concatenate([nodal_vectors[instants, node], nodal_vectors[instants, node + 1]], axis=1)
     return np.asarray(np.einsum("tk,tkd->td", N, pairs))
 
 

@@ -42,8 +42,8 @@ class Cuts:
         self.near = LENGTH_TOLERANCE * total
         self.s = np.clip(s, 0.0, total)
         self.after = np.where(self.s <= self.near, True, np.where(self.s >= total - self.near, False, after))
-        node, within = mesh.nearest_node(self.s), mesh.element_at(self.s)
-        on_node = np.abs(self.s - mesh.node_s[node]) <= self.near
+        node, within = mesh.nearest_boundary(self.s), mesh.element_at(self.s)
+        on_node = np.abs(self.s - mesh.boundaries[node]) <= self.near
         element = np.where(on_node, node - ~self.after, within).astype(int)
         self.element = np.clip(element, 0, cable.n_elements - 1)
         length = mesh.each_length(self.element)

@@ -262,7 +262,7 @@ class CableLoads:
 
     def _joints(self) -> None:
         for joint in self.model.joints:
-            if joint.slide is not None or all(end.cable < 0 for end in joint.attachments):
+            if not joint.is_of_scene or all(end.cable < 0 for end in joint.attachments):
                 continue
             force, moment = self.at.value(f"{joint.name}.force"), self.at.value(f"{joint.name}.moment")
             one, other = joint.attachments[::-1] if joint.reversed else joint.attachments

@@ -66,11 +66,12 @@ def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts, start: np.
     shape = len(nodal_vectors), cuts.s.shape[1]
     element, x = np.broadcast_to(cuts.element, shape), np.broadcast_to(cuts.x, shape)
     instants = np.arange(shape[0])[:, None]
-    e = np.concatenate([nodal_vectors[instants, element], nodal_vectors[instants, element + 1]], axis=2)
+    node = cable.mesh.first_node(element)
+    e = np.concatenate([nodal_vectors[instants, node], nodal_vectors[instants, node + 1]], axis=2)
     e = e.reshape(-1, *e.shape[2:])
     if start is not None:
         start = cable.in_plane(start)[0]
-        start = np.concatenate([start[element], start[element + 1]], axis=2).reshape(e.shape)
+        start = np.concatenate([start[node], start[node + 1]], axis=2).reshape(e.shape)
     e0 = [] if reference is None else [reference[element].reshape(-1, *reference.shape[1:])]
     lengths = cable.mesh.mean if cable.mesh.is_even else cable.mesh.lengths[element].ravel()
     S = sections[0] if len(sections) == 1 else sections[cable.of_elements(cable.uniform_pieces.index)[element.ravel()]]

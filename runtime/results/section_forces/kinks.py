@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from ...parts.validation import LENGTH_TOLERANCE
 from ..shape_functions import on_axis
 from .balance import Cuts, balanced, resultants
 from .cable_loads import CableLoads
-from .layer import Kink, between, fixed_direction
+from .layer import Kink, between, fixed_direction, line_bending, of_joint
 from .nodal_forces import ElementForces
 
 ForceAt = Callable[[np.ndarray, bool], np.ndarray]
@@ -30,7 +31,22 @@ def kinks(scene: SceneData, cable: Cable, model: CableModel, forces: ElementForc
         return balanced(cable, model, forces, loads, number, Cuts(model, s, after))[0]
 
     return [*_of_points(cable, model, forces, loads, number, force_at),
-            *_of_nodes(scene, cable, model, forces, force_at)]
+            *_of_nodes(scene, cable, model, forces, force_at),
+            *_of_pieces(cable, model, forces, loads, number)]
+
+
+def _of_pieces(cable: Cable, model: CableModel, forces: ElementForces, loads: CableLoads, number: int) -> list[Kink]:
+    """Return the kinks at the joints of pieces."""
+    found: list[Kink] = []
+    for pieces in pairwise(cable.uniform_pieces):
+        s, moments = np.full(len(forces.e), cable.mesh.start(pieces[1].first)), []
+        one, other = (piece.material.youngs_modulus * float(np.mean(piece.section.moments()[1 : cable.dim]))
+                      for piece in pieces)
+        for after, EI in ((False, one), (True, other)):
+            force, _, change = balanced(cable, model, forces, loads, number, Cuts(model, s[:1, None], after))
+            moments.append(EI * line_bending(lambda turn: np.ones(turn.shape[:2]), force, change)[:, 0])
+        found += of_joint(s, moments[0], moments[1], (one, other))
+    return found
 
 
 def _of_points(cable: Cable, model: CableModel, forces: ElementForces, loads: CableLoads, number: int,
@@ -55,17 +71,17 @@ def _of_nodes(scene: SceneData, cable: Cable, model: CableModel, forces: Element
               force_at: ForceAt) -> list[Kink]:
     """Return the kinks at supports and ties; a section that cannot turn fixes the direction of the line."""
     found: list[Kink] = []
-    directed: dict[int, bool] = {}  # by node: whether its section keeps its direction
+    directed: dict[int, bool] = {}  # by the end of an element: whether its section keeps its direction
     ends = [(support.cable, support.s, _keeps_direction(support)) for support in scene.supports]
     for tie in scene.ties.values():
         ends += [(tie.cable, tie.s, tie.rotation == "rigid"), (tie.to, tie.at, tie.rotation == "rigid")]
     for on, at_s, keeps in ends:
         if on == cable.name:
-            node = cable.node(at_s)
+            node = int(model.mesh.boundary_of_node[cable.node(at_s)])
             directed[node] = directed.get(node, False) or keeps
     times = len(forces.e)
     for node, is_directed in directed.items():
-        s = np.full(times, model.mesh.node_s[node])
+        s = np.full(times, model.mesh.boundaries[node])
         first, last = node == 0, node == cable.elements
         element, at = (node - 1, len(model.vectors)) if last else (node, 0)
         direction = _normal(model, spatial(forces.e[:, element, at : at + len(model.vectors)]))

@@ -43,6 +43,17 @@ def fixed_direction(s: np.ndarray, direction: np.ndarray, force: np.ndarray, sid
     return Kink(s, axis, theta, np.zeros_like(force), side)
 
 
+def of_joint(s: np.ndarray, before: np.ndarray, after: np.ndarray, EI: tuple[float, float]) -> list[Kink]:
+    """Return both sides of a joint of two pieces, between moments (T, 3) of their lines with EI in N m² of each.
+
+    Beside it the moment differs from that of the line by a exp(-d/sqrt(E I/N)). The moment is continuous, and the
+    direction, whose change on each side is a/sqrt(E I N): a sqrt(E I) on the other side has the opposite sign.
+    """
+    roots = np.sqrt(EI)
+    jump, none = 2 * (after - before) / roots.sum(), np.zeros(len(s))
+    return [Kink(s, np.zeros_like(before), none, jump * root, side) for root, side in zip(roots, (-1, 1), strict=True)]
+
+
 Stiffness = Callable[[np.ndarray], np.ndarray]
 """E I (T, n), N m^2, of bending about directions (T, n or 1, 3)."""
 

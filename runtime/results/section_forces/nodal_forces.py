@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import block_diag, coo_array, csc_array, csr_array, kron
+from scipy.sparse import block_array, block_diag, coo_array, csc_array, csr_array, kron, lil_array
 from scipy.sparse.linalg import splu
 
+from ...model.joints import JointModel
 from ...model.model import CableModel, Model
 from ...model.states import element_coordinates, positions
 from ...model.unknowns import by_unknowns
@@ -55,7 +56,8 @@ def internal(cable: CableModel, at: Instants) -> np.ndarray:
     start = None
     if at.start is not None:
         vectors = at.start(f"{cable.name}.nodal_vectors")[..., : cable.shape[2]]
-        start = np.broadcast_to(np.concatenate([vectors[:, :-1], vectors[:, 1:]], axis=2), e.shape)
+        ends = [vectors[:, cable.mesh.first], vectors[:, cable.mesh.last]]
+        start = np.broadcast_to(np.concatenate(ends, axis=2), e.shape)
 
     def forces(length: float, e: np.ndarray, v: np.ndarray, A: np.ndarray, start: np.ndarray | None,
                tau: float) -> np.ndarray:
@@ -118,8 +120,8 @@ def _accelerations(model: Model, at: Instants, forces: dict[int, np.ndarray], lo
     for k, f in forces.items():
         cable = model.cables[k]
         nodal = np.zeros((len(f), *cable.shape))
-        nodal[:, :-1] += f[:, :, : cable.shape[1]]
-        nodal[:, 1:] += f[:, :, cable.shape[1] :]
+        nodal[:, cable.mesh.first] += f[:, :, : cable.shape[1]]
+        nodal[:, cable.mesh.last] += f[:, :, cable.shape[1] :]
         assembled[:, cable.coordinates] = nodal.reshape(len(f), -1)
         masses.append(_mass(cable))
     M = block_diag(masses, format="csr")
@@ -127,16 +129,46 @@ def _accelerations(model: Model, at: Instants, forces: dict[int, np.ndarray], lo
     prescribed = _prescribed(model, at.time)[:, chosen]
     found = np.zeros_like(assembled)
     of_fluid = {k: loads.added[k].matrices() for k in forces if k in loads.added}
-    blocks = [slice(None)] if not of_fluid else [slice(t, t + 1) for t in range(len(at.time))]
+    joints = [joint for joint in model.joints if joint.joins_pieces and joint.attachments[0].cable in forces]
+    blocks = [slice(t, t + 1) for t in range(len(at.time))] if of_fluid or joints else [slice(None)]
     for block in blocks:
         whole = M if not of_fluid else M + block_diag([_fluid_mass(model.cables[k], of_fluid.get(k), block.start)
                                                        for k in forces], format="csr")
         right = -(assembled[block, chosen] + (whole @ prescribed[block].T).T)
-        if T.shape[1]:
+        if joints:
+            C, bias = _parallel_tangents(model, joints, at.q[block.start], at.v[block.start])
+            C = C[:, chosen]
+            left = block_array([[T.T @ whole @ T, (C @ T).T], [C @ T, None]], format="csc")
+            given = np.concatenate([T.T @ right[0], bias - C @ prescribed[block.start]])
+            found[block.start, chosen] = T @ splu(left).solve(given)[: T.shape[1]]
+        elif T.shape[1]:
             solve = splu(csc_array(T.T @ whole @ T)).solve
             found[block, chosen] = (T @ solve(np.ascontiguousarray(T.T @ right.T))).T
     found[:, chosen] += prescribed
     return found
+
+
+def _parallel_tangents(model: Model, joints: list[JointModel], q: np.ndarray, v: np.ndarray
+                       ) -> tuple[csr_array, np.ndarray]:
+    """Return C (rows, n_dof), sparse, and b (rows,): joints of pieces give accelerations with C a = b.
+
+    With the tangent i of a slope e, an acceleration of i across the tangent is n . e" / |e| - 2 (i . e')(n . e') / |e|²
+    for each unit vector n across it, and equal on both sides.
+    """
+    C, b = lil_array((len(joints) * (model.dim - 1), model.n_dof)), np.zeros(len(joints) * (model.dim - 1))
+    row = 0
+    for joint in joints:
+        cable = model.cables[joint.attachments[0].cable]
+        node = int(cable.mesh.first_node(joint.attachments[1].element))
+        at = [model.nodes[cable.name][k].dofs("r_x") for k in (node - 1, node)]
+        tangent = q[at[0]] / np.linalg.norm(q[at[0]])
+        for normal in np.linalg.svd(tangent[None])[2][1:]:
+            for sign, dofs in zip((1.0, -1.0), at, strict=True):
+                size = float(np.linalg.norm(q[dofs]))
+                C[row, dofs] = sign * normal / size
+                b[row] += sign * 2 * float(tangent @ v[dofs]) * float(normal @ v[dofs]) / size**2
+            row += 1
+    return csr_array(C), b
 
 
 def _mass(cable: CableModel) -> csr_array:
@@ -155,7 +187,7 @@ def _fluid_mass(cable: CableModel, matrices: np.ndarray | None, instant: int) ->
 def _assembled(cable: CableModel, matrices: np.ndarray, per_node: int) -> csr_array:
     """Return the sum of matrices (1 or elements, 2 per_node, 2 per_node) of the elements, sparse."""
     n = cable.shape[0] * per_node
-    index = np.arange(cable.n_elements)[:, None, None] * per_node
+    index = cable.mesh.first_node(np.arange(cable.n_elements))[:, None, None] * per_node
     local = np.arange(2 * per_node)
     at_row = np.broadcast_to(index + local[:, None], (cable.n_elements, 2 * per_node, 2 * per_node))
     at_column = np.broadcast_to(index + local, at_row.shape)

@@ -40,8 +40,8 @@ def elastic_force(model: CableModel, A: np.ndarray, q: np.ndarray) -> np.ndarray
 def assembled(model: CableModel, each: np.ndarray) -> np.ndarray:
     """Return (coordinates,): the sums at the nodes of forces (elements, vectors, dim) on the nodes of each element."""
     found = np.zeros(model.shape)
-    found[:-1] += each[:, : model.shape[1]]
-    found[1:] += each[:, model.shape[1] :]
+    found[model.mesh.first] += each[:, : model.shape[1]]
+    found[model.mesh.last] += each[:, model.shape[1] :]
     return found.ravel()
 
 

@@ -57,8 +57,7 @@ class Rest:
         model = self.model_of(cable)
         element = int(model.mesh.element_at(s))
         N = model.kernel("on_axis")(model.mesh.length(element), s - model.mesh.start(element))[derivative]
-        first = model.first + element * model.shape[1] * model.shape[2]
-        return N, slice(first, first + len(N) * model.shape[2])
+        return N, model.dofs_of(element)
 
     def model_of(self, cable: str) -> CableModel:
         """Return the model of a cable, by its name."""

@@ -22,6 +22,7 @@ from scipy.sparse import csc_array, csr_array
 from ...errors import SceneError
 from ...model.bodies import body_gravity
 from ...model.border import ACCELERATIONS, NEWTON, elimination
+from ...model.build import elements_of
 from ...model.cables import cable_gravity
 from ...model.combinations import Combinations
 from ...model.kinds import COUPLINGS
@@ -207,9 +208,7 @@ class Changes:
         """Return dR/dx at the state with each dof as an unknown: (n_dof + n_extra, the same)."""
         model = self.model
         n = model.cables[-1].coordinates.stop
-        elements = np.array([(node.first, 2 * node.vectors.size) for nodes in model.nodes.values()
-                             for node in nodes[:-1]], dtype=int).reshape(-1, 2)
-        numbering = as_drawn(elements, np.arange(n))
+        numbering = as_drawn(elements_of(model.cables), np.arange(n))
         free = altered(model, motions=[], unknown_of_dof=np.arange(model.n_dof), combinations=Combinations.of([]),
                      n_band=n, n_border_dof=model.n_dof - n, width=numbering.width, chains=numbering.chains)
         free.newton, free.accelerations = elimination(free, NEWTON), elimination(free, ACCELERATIONS)

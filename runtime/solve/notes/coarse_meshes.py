@@ -13,6 +13,8 @@ and motion bear forces, too: half of their energies counts. The moment at the cl
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from ...engine import chord_lengths, moments_along, quadratic_forms, tension_work
@@ -53,7 +55,8 @@ class _Strains:
         self.EA, self.EI, *_ = LineStiffness.of(self.part, model.dim)
         self.h = cable.mesh.all_lengths
         self.half_stiffness = 0.5 * self.EA * self.h
-        self.supported = sorted(self.part.node(each.s) for each in scene.supports if each.cable == cable.name)
+        self.supported = sorted(int(cable.mesh.boundary_of_node[self.part.node(each.s)])
+                                for each in scene.supports if each.cable == cable.name)
         self.is_slack_in_compression = self.part.traits.membrane == "tension_only"
         if self.part.is_curved:
             self.drawn = self._strain(self.part.rest_nodal_vectors[None])
@@ -95,7 +98,12 @@ class _Strains:
 
     def motion(self, v: np.ndarray) -> np.ndarray:
         """Return (T,): the kinetic energy at rates v (T, n), in J."""
-        return quadratic_forms(self.cable.m, self.cable.nodal(v))
+        cable, nodal = self.cable, self.cable.nodal(v)
+        if not cable.mesh.doubled:
+            return quadratic_forms(cable.m, nodal)
+        ends = [0, *cable.mesh.doubled, cable.n_elements]
+        return np.asarray(sum(quadratic_forms(cable.m[first:end], nodal[:, first + k : end + k + 1])
+                              for k, (first, end) in enumerate(pairwise(ends))))
 
 
 class _Line:
@@ -125,9 +133,11 @@ class _Line:
         and supports, of several between the two supports with the largest distance.
         """
         if len(self.strains) == 1:
-            r = self.strains[0].cable.positions(q)
-            return tension_work(mean, self.EA, self.h, chord_lengths(r, self.ends), self.ends[:-1])
-        r = np.concatenate([each.cable.positions(q)[:, each.supported] for each in self.strains], axis=1)
+            cable, ends = self.strains[0].cable, self.ends
+            nodes = ends if cable.ends_of_elements is None else [cable.ends_of_elements[end] for end in ends]
+            return tension_work(mean, self.EA, self.h, chord_lengths(cable.positions(q), nodes), ends[:-1])
+        r = np.concatenate([each.cable.positions(q)[:, each.cable.mesh.first_node(np.array(each.supported, int))]
+                            for each in self.strains], axis=1)
         apart = np.linalg.norm(r[:, :, None] - r[:, None], axis=-1).max(axis=(1, 2), initial=0.0)[:, None]
         return tension_work(mean, self.EA, self.h, apart, self.ends)
 

@@ -77,7 +77,8 @@ class CoarseSlides(Note):
             return _on_rope(slide.coordinates, q, s)
         cable = self.model.cables[slide.cable]
         nodal, element = cable.nodal(q), cable.mesh.element_at(s)
-        cosine, strain = around_elements(nodal, cable.vectors.index("r_x"), middle_strain(cable, nodal), element)
+        ends = nodal if not cable.mesh.doubled else nodal[:, cable.mesh.nodes_of_boundaries]
+        cosine, strain = around_elements(ends, cable.vectors.index("r_x"), middle_strain(cable, nodal), element)
         return _Beside(cosine, strain, cable.mesh.lengths if cable.mesh.is_even else cable.mesh.lengths[element])
 
     def _line(self, slide: SlideModel) -> Cable | Rope:
@@ -86,7 +87,8 @@ class CoarseSlides(Note):
         return self.scene.cables[name] if slide.coordinates is None else self.scene.ropes[name]
 
     def _stiffness(self, slide: SlideModel) -> LineStiffness:
-        return LineStiffness.of(self._line(slide), self.model.dim)
+        """Return the least stiffness along the line of a slide."""
+        return LineStiffness(*map(np.min, LineStiffness.of(self._line(slide), self.model.dim)))
 
     def notes(self) -> list[str]:
         """Return a note for each slide with a large mean error."""
@@ -97,7 +99,7 @@ class CoarseSlides(Note):
             if error <= FORCE_ERROR_LIMIT:
                 continue
             part = self._line(slide)
-            bent = float(np.sqrt(np.min(self._stiffness(slide).EI_strong) / tension))
+            bent = float(np.sqrt(self._stiffness(slide).EI_strong / tension))
             such = f", such as elements={np.ceil(part.length / bent):.0f}" if isinstance(part, Cable) else ""
             notes.append(
                 f'slide "{slide.name}": {part.where} turns there by {np.degrees(angle):.2g} degrees within '

@@ -41,7 +41,7 @@ class CoincidentPoints(Note):
                    if part.loses_direction]
         joints = [(scene.joints[of.name], of.attachments,
                    'keep them apart, or take kind="spherical" for points that coincide')
-                  for of in model.joints if of.slide is None and scene.joints[of.name].joint_kind == "distance"]
+                  for of in model.joints if of.is_of_scene and scene.joints[of.name].joint_kind == "distance"]
         self._parts = []
         for part, (first, second), remedy in [*springs, *joints]:
             a, b = (attachment_points(model, end, model.q[None])[0] for end in (first, second))

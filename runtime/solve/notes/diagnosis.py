@@ -197,8 +197,9 @@ def condition(model: Model, dof: int, q: np.ndarray, v: np.ndarray) -> tuple[str
     if (found := _node(model, dof)) is None:
         return speed, False
     cable, node = found
-    r = cable.nodal(q)[:, 0]
-    stretch = (np.linalg.norm(np.diff(r, axis=0), axis=1) / cable.mesh.lengths)[max(node - 1, 0) : node + 1]
+    r, end = cable.nodal(q)[:, 0], int(cable.mesh.boundary_of_node[node])
+    stretch = (np.linalg.norm(r[cable.mesh.last] - r[cable.mesh.first], axis=1) / cable.mesh.lengths)[
+        max(end - 1, 0) : end + 1]
     worst = stretch[np.argmax(np.abs(np.log(np.maximum(stretch, 1e-300))))]
     fair = FOLDED_CHORD < worst < MAX_PLAUSIBLE_STRETCH
     notes = "" if fair else f"its elements there are {worst:.3g} times their length at rest, "

@@ -54,13 +54,14 @@ class Folds(Note):
     def see(self, rows: Rows) -> None:
         """Measure further output rows."""
         for cable, unstressed in self._cables:
-            chords = chord_lengths(cable.positions(rows["q"]))
+            chords = chord_lengths(cable.positions(rows["q"]), cable.ends_of_elements)
             is_folded = chords <= FOLDED_CHORD * unstressed
             if not is_folded.any():
                 continue
             at, element = np.nonzero(is_folded)
             nodal, lengths = cable.nodal(rows["q"]), cable.mesh.each_length(element)
-            stretch = stretches(cable, nodal[at, element], nodal[at, element + 1], element, GAUSS_RULE)
+            node = cable.mesh.first_node(element)
+            stretch = stretches(cable, nodal[at, node], nodal[at, node + 1], element, GAUSS_RULE)
             arc = np.maximum(stretch, np.finfo(float).tiny) * lengths
             ratio = chords[at, element] / arc * (lengths / unstressed[element])
             k = int(np.argmin(ratio))
@@ -107,7 +108,7 @@ class Folds(Note):
 def _turns(cable: CableModel, nodal: np.ndarray) -> np.ndarray:
     """Return (elements,): the largest angle in rad between tangents of each element; nodal: (1, nodes, vectors, dim).
     """
-    tangents = slopes_at(nodal, slopes(cable, *TANGENT_POSITIONS))[:, 0]
+    tangents = slopes_at(cable, nodal, slopes(cable, *TANGENT_POSITIONS))[:, 0]
     tangents /= np.maximum(np.linalg.norm(tangents, axis=-1, keepdims=True), np.finfo(float).tiny)
     cosines = np.einsum("aed,bed->eab", tangents, tangents).min(axis=(1, 2))
     return np.asarray(np.arccos(np.clip(cosines, -1, 1)))

@@ -28,9 +28,11 @@ class ReducedStrain(Note):
         """Measure further output rows."""
         for cable in self._cables:
             nodal = cable.nodal(rows["q"])
-            strain = np.linalg.norm(np.diff(cable.positions(rows["q"]), axis=1), axis=-1) / cable.mesh.lengths - 1
+            first, last = nodal[:, cable.mesh.first], nodal[:, cable.mesh.last]
+            at_r = cable.vectors.index("r")
+            strain = np.linalg.norm(last[:, :, at_r] - first[:, :, at_r], axis=-1) / cable.mesh.lengths - 1
             at = (strain < -STABILISATION).any(axis=1)  # of bent elements the chord is shorter than the centreline
-            strain[at] = stretches(cable, nodal[at, :-1], nodal[at, 1:], np.arange(cable.n_elements), GAUSS_RULE) - 1
+            strain[at] = stretches(cable, first[at], last[at], np.arange(cable.n_elements), GAUSS_RULE) - 1
             k = int(np.argmin(strain.min(axis=1)))
             self.keep(cable.name, -strain[k].min(), rows["time"][k])
 

@@ -66,7 +66,8 @@ class _Strut(NamedTuple):
         """Return (times, elements): the rates in 1/s at which elements of the cable buckle."""
         cable, length, (_, EI, _, mass) = self.cable, self.part.length, self.of
         nodal = cable.nodal(q)
-        strain = stretches(cable, nodal[:, :-1], nodal[:, 1:], np.arange(cable.n_elements), SIMPSON_RULE) - 1
+        ends = nodal[:, cable.mesh.first], nodal[:, cable.mesh.last]
+        strain = stretches(cable, *ends, np.arange(cable.n_elements), SIMPSON_RULE) - 1
         if self.stiffness * -strain.min() <= np.min(EI) * (np.pi / length) ** 2:  # not even in one wave along the cable
             return np.zeros(strain.shape)
         N = self.stiffness * np.maximum(-strain, 0.0)
@@ -91,7 +92,7 @@ class Sensitivity(Note):
                         for cable in self.model.cables]
         loops, parts = joints_in_loops(self.model), self.scene.joints
         self._joints = [(k, joint, parts[joint.name]) for k, joint in enumerate(self.model.joints)
-                        if joint.slide is None and not loops[k] and parts[joint.name].joint_kind in TOPPLING_JOINTS
+                        if joint.is_of_scene and not loops[k] and parts[joint.name].joint_kind in TOPPLING_JOINTS
                         and not parts[joint.name].is_driven]
 
     def see(self, rows: Rows) -> None:

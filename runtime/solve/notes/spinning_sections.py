@@ -55,14 +55,14 @@ def has_sections(cable: CableModel) -> bool:
 
 def torsion_ratio(cable: CableModel, part: Cable, nodal: np.ndarray) -> np.ndarray:
     """Return (...): the largest N (a L)²/GJ of the elements at nodal vectors (..., nodes, vectors, 3)."""
-    slope = nodal[..., cable.vectors.index("r_x"), :]
+    slope, mesh = nodal[..., cable.vectors.index("r_x"), :], cable.mesh
     stretch = np.linalg.norm(slope, axis=-1)
     tangent = slope / stretch[..., None]
-    angle = np.arccos(np.clip((tangent[..., 1:, :] * tangent[..., :-1, :]).sum(axis=-1), -1.0, 1.0))
-    section, material = part.section, part.material
-    tension = material.youngs_modulus * section.area * ((stretch[..., 1:] + stretch[..., :-1]) / 2 - 1.0)
-    torsion = material.lame()[1] * section.torsion_constant
-    return np.asarray((tension * (angle * cable.mesh.lengths) ** 2).max(axis=-1) / torsion)
+    angle = np.arccos(np.clip((tangent[..., mesh.last, :] * tangent[..., mesh.first, :]).sum(axis=-1), -1.0, 1.0))
+    strain = (stretch[..., mesh.last] + stretch[..., mesh.first]) / 2 - 1.0
+    tension = part.of_elements(lambda piece: piece.material.youngs_modulus * piece.section.area) * strain
+    torsion = part.of_elements(lambda piece: piece.material.lame()[1] * piece.section.torsion_constant)
+    return np.asarray((tension * (angle * mesh.lengths) ** 2 / torsion).max(axis=-1))
 
 
 def stable_length(cable: CableModel, ratio: float) -> float:

@@ -40,7 +40,8 @@ class StraightStruts(Note):
             straight = _straight(r, before)
             if straight.any() and len(at := np.flatnonzero(straight & np.append(before, straight[:-1]))):
                 # at two times: else something bends it
-                shortening = 1 - np.linalg.norm(np.diff(r[at], axis=1), axis=2) / cable.mesh.lengths
+                chord = r[at][:, cable.mesh.last] - r[at][:, cable.mesh.first]
+                shortening = 1 - np.linalg.norm(chord, axis=2) / cable.mesh.lengths
                 forces = (_compressive_stiffness(part) * shortening).max(axis=1)
                 k, force = at[np.argmax(forces)], float(forces.max())
                 bearable = np.min(LineStiffness.of(part, 3).EI_weak) / cable.mesh.total**2

@@ -67,10 +67,10 @@ class Straightened(Note):
 
 def _curvature(cable: CableModel, nodal: np.ndarray) -> np.ndarray:
     """Return (positions, T, elements): curvatures in 1/m at nodal vectors (T, nodes, vectors, 3)."""
-    r_x = slopes_at(nodal, slopes(cable, *CURVATURE_POSITIONS))
+    r_x = slopes_at(cable, nodal, slopes(cable, *CURVATURE_POSITIONS))
     after, before = (slopes(cable, *(part + side for part in CURVATURE_POSITIONS))
                      for side in (SLOPE_DIFFERENCE, -SLOPE_DIFFERENCE))
-    r_xx = slopes_at(nodal, after - before) / (2 * SLOPE_DIFFERENCE * cable.mesh.lengths[:, None])
+    r_xx = slopes_at(cable, nodal, after - before) / (2 * SLOPE_DIFFERENCE * cable.mesh.lengths[:, None])
     size = np.linalg.norm(r_x, axis=-1)
     return np.asarray(np.linalg.norm(cross(r_x, r_xx), axis=-1) / np.where(size > 0, size, 1.0) ** 3)
 

@@ -15,13 +15,15 @@ from ...parts.scene_data import SceneData
 
 
 def excess(cable: Cable, stretch: ArrayLike, speed: ArrayLike) -> np.ndarray:
-    """Return m v² - T/a in N, which is positive where a point outruns the transverse waves of a cable.
+    """Return m v² - T/a in N, which is positive where a point outruns the transverse waves of a cable: the largest of
+    its pieces.
 
     stretch: of the cable; speed: of the point, in m/s of its arc-length at rest.
     """
-    a, area = np.asarray(stretch), float(cable.section.moments()[0])
-    tension = cable.material.youngs_modulus * area * (a - 1.0)
-    return np.asarray(cable.material.density * area * np.square(speed) - tension / a)
+    a = np.asarray(stretch)
+    return np.asarray(np.max([piece.section.area * (piece.material.density * np.square(speed)
+                                         - piece.material.youngs_modulus * (a - 1.0) / a)
+                   for piece in cable.uniform_pieces], axis=0))
 
 
 def outrunning(scene: SceneData) -> list[str]:

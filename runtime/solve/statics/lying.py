@@ -46,7 +46,7 @@ def lying(scene: SceneData, model: Model, q: np.ndarray) -> list[Lying]:
         thick = max(contact.radius, float(np.sqrt(
             min(piece.section.area for piece in scene.cables[part.a].uniform_pieces) / np.pi)))
         on = np.flatnonzero(distances(model, scene, contact, q[None]).ravel() <= contact.radius + GAP_TOLERANCE * thick)
-        nodes = model.cables[contact.cable].n_elements + 1
+        nodes = model.cables[contact.cable].mesh.n_nodes
         if len(on):
             found.append(Lying(k, float(contact.arc[on[0]]), float(contact.arc[on[-1]]),
                                MAX_RMS_STEP * thick * float(np.sqrt(nodes))))

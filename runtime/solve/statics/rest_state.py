@@ -267,7 +267,7 @@ class RestState(NamedArrays):
         """
         q, size = self.static_state["q"][None], max(float(np.abs(model.q).max(initial=0.0)), 1.0)
         for was, joint in zip(self.model.joints, model.joints, strict=True):
-            if joint.slide is not None:
+            if not joint.is_of_scene:
                 continue
             was_open, is_open = (np.subtract(*(attachment_points(of, end, q)[0] for end in each.attachments))
                                  for of, each in ((self.model, was), (model, joint)))

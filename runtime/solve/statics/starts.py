@@ -79,7 +79,8 @@ def _nodal_vectors(vectors: np.ndarray, was: CableModel, cable: CableModel) -> n
                       for k in range(vectors.shape[1])]).transpose(2, 0, 1)
     for node, (element, x) in enumerate(zip(*was.mesh.place(s), strict=True)):
         shapes = kernel(was.mesh.length(element), min(x, was.mesh.length(element)))
-        of_element = np.concatenate([vectors[element], vectors[element + 1]])
+        at = int(was.mesh.first_node(element))
+        of_element = np.concatenate([vectors[at], vectors[at + 1]])
         for k, name in enumerate(was.vectors):
             if name in ("r", "r_x"):
                 found[node, k] = shapes[("r", "r_x").index(name)] @ of_element

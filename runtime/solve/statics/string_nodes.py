@@ -145,7 +145,7 @@ class StringNodes:
         for coupling in self.model.couplings:
             if rests(coupling):
                 self.above_plane |= _cables_of(coupling)
-            if isinstance(coupling, AnyLoadModel | DragModel) or rests(coupling):
+            if isinstance(coupling, AnyLoadModel | DragModel) or rests(coupling) or _joins_pieces(coupling):
                 continue
             cables = _cables_of(coupling)
             node = self._node_of(coupling) if len(cables) == 1 else None
@@ -169,8 +169,13 @@ class StringNodes:
         own = at.N.reshape(2, -1)[:, cable.vectors.index("r")]
         if not np.isclose(own.max(), 1.0, rtol=0, atol=1e-9):
             return None
-        node = at.element + int(np.argmax(own))
+        node = int(cable.mesh.first_node(at.element)) + int(np.argmax(own))
         return first + node if isinstance(coupling, JointModel) or node in (0, cable.shape[0] - 1) else None
+
+
+def _joins_pieces(coupling: object) -> bool:
+    """Return whether a coupling joins two pieces of a cable."""
+    return isinstance(coupling, JointModel) and coupling.joins_pieces
 
 
 def rests(coupling: object) -> bool:

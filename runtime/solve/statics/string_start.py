@@ -137,9 +137,9 @@ def _add_drag(model: Model, drag: DragModel, q: np.ndarray, p: float, force: np.
     f = densities(model, drag, np.zeros(1), q[None], np.zeros((1, model.n_dof)))[0][0, ..., : model.dim]
     f = p * f * np.broadcast_to(drag.weights, f.shape[:2])[:, :, None]
     share, at = (1 + GAUSS[0]) / 2, cable.vectors.index("r")
-    own = cable.nodal(force)[drag.first : drag.first + drag.n_elements + 1]
-    own[:-1, at] += np.einsum("egd,g->ed", f, 1 - share)
-    own[1:, at] += np.einsum("egd,g->ed", f, share)
+    own, node = cable.nodal(force), cable.mesh.first_node(np.arange(drag.first, drag.first + drag.n_elements))
+    own[node, at] += np.einsum("egd,g->ed", f, 1 - share)
+    own[node + 1, at] += np.einsum("egd,g->ed", f, share)
 
 
 class _Line:
@@ -163,7 +163,7 @@ class _Line:
             elements = self.model.cables[c].n_elements
             along = np.empty(elements * parts + 1, dtype=int)
             inside = np.arange(elements * parts + 1) % parts != 0
-            along[~inside] = number[nodes.first[c] : nodes.first[c + 1]]
+            along[~inside] = number[nodes.first[c] + self.model.cables[c].mesh.nodes_of_boundaries]
             along[inside] = np.arange(self.n, self.n + inside.sum())
             self.n += int(inside.sum())
             self.along.append(along)
@@ -173,7 +173,8 @@ class _Line:
 
     def _link(self, node: int) -> int:
         """Return the number of the link of its cable that begins at a cable's node."""
-        return (node - int(self.nodes.first[self.nodes.cable[node]])) * self.parts
+        c = int(self.nodes.cable[node])
+        return int(self.model.cables[c].mesh.boundary_of_node[node - int(self.nodes.first[c])]) * self.parts
 
     def _beside(self, node: int, side: int) -> tuple[int, float] | None:
         """Return the string node next to a cable's node, towards its end (side 1) or start (-1), and the link length.
@@ -213,7 +214,9 @@ class _Line:
         """Return (n, dim): forces on the cables' nodes, distributed over the links of the adjacent elements."""
         load, hat = np.zeros((self.n, self.model.dim)), 1 - np.abs(np.arange(1 - self.parts, self.parts)) / self.parts
         for c, along in zip(self.group, self.along, strict=True):
-            own = force[self.nodes.r[self.nodes.first[c] : self.nodes.first[c + 1]]]
+            mesh, own = self.model.cables[c].mesh, force[self.nodes.r[self.nodes.first[c] : self.nodes.first[c + 1]]]
+            if mesh.doubled:
+                own = np.stack([np.bincount(mesh.boundary_of_node, column) for column in own.T], axis=1)
             if self.parts > 1:
                 given = np.zeros((len(along), own.shape[1]))
                 share = np.convolve(np.ones(len(along)), hat, "same")[:: self.parts]
@@ -282,7 +285,8 @@ class _Line:
         if contact.shape == "flat":
             normal = np.asarray(contact.direction, dtype=float)
             return np.tile(normal, (n, 1)), np.full(n, float(normal @ np.asarray(contact.on[0].u)[:dim]))
-        r = self.q[self.nodes.r[self.nodes.first[self.group[k]] : self.nodes.first[self.group[k] + 1]]]
+        c = self.group[k]
+        r = self.q[self.nodes.r[self.nodes.first[c] + self.model.cables[c].mesh.nodes_of_boundaries]]
         steps, nodes = np.arange(len(free)) / self.parts, np.arange(len(r))
         points = np.zeros((n, 3))
         points[:, :dim] = np.stack([np.interp(steps, nodes, column) for column in r.T], axis=1)[free]
@@ -326,8 +330,10 @@ class _Line:
             cable, first, last = self.model.cables[c], int(self.nodes.first[c]), int(self.nodes.first[c + 1]) - 1
             slope = slopes(r[along], length, (known.get(first), known.get(last)))[:: self.parts]
             was = cable.nodal(q)
-            found[cable.coordinates] = vectors_along(cable.vectors, was, r[along[:: self.parts]], slope,
-                                                    cable.mesh.node_s, last in self.clamped).ravel()
+            mesh = cable.mesh
+            vectors = vectors_along(cable.vectors, was[mesh.nodes_of_boundaries], r[along[:: self.parts]], slope,
+                                    mesh.boundaries, last in self.clamped)
+            found[cable.coordinates] = vectors[mesh.boundary_of_node].ravel()
         own = slice(0, self.model.cables[-1].coordinates.stop)
         found[own] = q[own] + as_supports_leave(found[own] - q[own], self.model.unknown_of_dof[own],
                                                 self.model.combinations)

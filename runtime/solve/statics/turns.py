@@ -40,7 +40,7 @@ def turning(scene: SceneData, model: Model) -> Iterator[tuple[str, int]]:
         if motion.rotation is not None and found:
             yield motion.label, found[0]
     for joint in model.joints:
-        if joint.drive >= 0 and joint.slide is None and DRIVEN[scene.joints[joint.name].joint_kind] == "angle":
+        if joint.drive >= 0 and joint.is_of_scene and DRIVEN[scene.joints[joint.name].joint_kind] == "angle":
             yield joint.name, joint.drive
 
 
@@ -109,7 +109,8 @@ def too_long(model: Model, q: np.ndarray, begin: np.ndarray) -> str:
     begin: the configuration before the first step, at which an element may turn as far already.
     """
     for cable in model.cables:
-        turned, before = (angles(at[:-1], at[1:]) for at in (directions(cable, q), directions(cable, begin)))
+        turned, before = (angles(at[cable.mesh.first], at[cable.mesh.last])
+                          for at in (directions(cable, q), directions(cable, begin)))
         turned[before > MAX_TURN_BETWEEN_NODES] = 0.0
         k = int(np.argmax(turned))
         if turned[k] > MAX_TURN_BETWEEN_NODES:
