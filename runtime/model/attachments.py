@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import field
 from typing import Any, TypeVar
 
@@ -69,11 +69,13 @@ class AttachmentModel:
 class ModelBuilder:
     """Makes attachments, hulls of cables and signals for the couplings of a model.
 
-    cables, ropes, bodies: the models, in the scene's order.
+    cables, ropes, bodies: the models, in the scene's order; driven: dofs of `DrivenDofs`, by part and quantity.
     """
 
-    def __init__(self, scene: SceneData, cables: list[Any], ropes: list[Any], bodies: list[Any]):
+    def __init__(self, scene: SceneData, cables: list[Any], ropes: list[Any], bodies: list[Any],
+                 driven: Mapping[tuple[str, str], int]):
         self.scene: SceneData = scene
+        self.driven = driven
         self.cables, self.ropes, self.bodies = cables, ropes, bodies
         self.cable_index = {name: k for k, name in enumerate(scene.cables)}
         self.body_index = {name: k for k, name in enumerate(scene.bodies)}

@@ -14,6 +14,7 @@ from .border import ACCELERATIONS, NEWTON, elimination
 from .cables import arrays_of, cable_rates, level_tied_slopes
 from .coupling import number
 from .cutting import attached
+from .driven_dofs import DrivenDofs
 from .kinds import COUPLINGS
 from .model import CableModel, Model, MotionModel
 from .rope_model import rope_models, turn_motions
@@ -36,31 +37,34 @@ def build(scene: SceneData, supplied: bool = False) -> Model:
         cables.append(cable.model(n_flexible))
         n_flexible = cables[-1].coordinates.stop
     ropes = rope_models(scene, n_flexible, supplied)
-    bodies = body_models(scene, ropes[-1].coordinates.stop if ropes else n_flexible)
+    driven = DrivenDofs.of(scene, ropes[-1].coordinates.stop if ropes else n_flexible)
+    bodies = body_models(scene, driven.stop)
     nodal = [cable.vectors[..., :dim].copy() for cable in drawn]
     level_tied_slopes(scene, nodal)
     nodes = {model.name: _nodes(model, scene.cables[model.name].where, vectors)
              for model, vectors in zip(cables, nodal, strict=True)}
-    builder = ModelBuilder(scene, cables, ropes, bodies)
+    builder = ModelBuilder(scene, cables, ropes, bodies, driven.dofs)
     reduction = supports(scene, nodes, builder.signals.add).reduce(n_flexible, elements_of(cables), attached(scene))
     couplings = [model for kind in COUPLINGS for model in kind.models(builder)]
     n_extra, n_multipliers = number(couplings)
+    still = 0 * driven.start
     n_of_bodies = sum(dofs_of(body, dim) for body in bodies)
-    is_free = np.concatenate([*(~rope.fixed for rope in ropes), np.ones(n_of_bodies, dtype=bool)])
+    is_free = np.concatenate([*(~rope.fixed for rope in ropes), still > 0, np.ones(n_of_bodies, dtype=bool)])
     beside_cables = np.where(is_free, reduction.n_unknowns + is_free.cumsum() - 1, -1)
     numbering = reduction.numbering
     model = Model(
         dim, cables, ropes, bodies, couplings, builder.signals,
         [*(MotionModel(dof, p.signal, p.base, p.linear, p.cosine, p.sine) for dof, p in reduction.prescribed),
-         *(MotionModel(dof, signal, 0.0, 1.0, 0.0, 0.0) for dof, signal in turn_motions(ropes, builder.signals))],
-        q=_joined(*(vectors.ravel() for vectors in nodal), *(rope.q for rope in ropes),
+         *(MotionModel(dof, signal, 0.0, 1.0, 0.0, 0.0) for dof, signal in turn_motions(ropes, builder.signals)),
+         *driven.motions(builder.signals)],
+        q=_joined(*(vectors.ravel() for vectors in nodal), *(rope.q for rope in ropes), driven.start,
                   *(configuration_of(body, dim) for body in described)),
-        v=_joined(cable_rates(scene, reduction), *(0 * rope.q for rope in ropes),
+        v=_joined(cable_rates(scene, reduction), *(0 * rope.q for rope in ropes), still,
                   *(velocity_of(body, dim) for body in described)),
-        weight=_joined(*(cable.weights for cable in drawn), *(rope.weight for rope in ropes),
+        weight=_joined(*(cable.weights for cable in drawn), *(rope.weight for rope in ropes), still,
                        *(body_weights(body, dim) for body in described)),
         gravity=_joined(*(cable.gravity(gravity) for cable in drawn),
-                        *(0 * rope.q for rope in ropes),
+                        *(0 * rope.q for rope in ropes), still,
                         *(body_gravity(body, gravity) for body in bodies)),
         unknown_of_dof=np.append(reduction.unknown_of_dof, beside_cables).astype(int),
         combinations=reduction.combinations,
@@ -73,6 +77,7 @@ def build(scene: SceneData, supplied: bool = False) -> Model:
         nodes=nodes,
         tables=[tables_of(name) for name in scene.libraries],
         plane_axes=scene.plane_axes,
+        driven=range(driven.first, driven.stop),
     )
     for rope in ropes:
         follow(model, rope)

@@ -267,7 +267,7 @@ class Model:
 
     couplings: in the order of the engine's sums, that of `kinds.COUPLINGS`. tables: addresses of kernels of libraries.
     newton, accelerations: eliminations of the borders of Newton's systems and of those of eq 38. plane_axes: the
-    rotation of results into the ground's axes, None for a model in these axes.
+    rotation of results into the ground's axes, None for a model in these axes. driven: the dofs of `DrivenDofs`.
     """
 
     dim: int
@@ -292,6 +292,7 @@ class Model:
     nodes: dict[str, list[Node]]
     tables: list[int] = field(default_factory=list)
     plane_axes: PlaneAxes | None = None
+    driven: range = range(0)
     newton: Elimination = field(init=False)
     accelerations: Elimination = field(init=False)
 

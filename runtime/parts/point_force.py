@@ -1,5 +1,6 @@
 """Forces between two points, such as springs."""
 
+from dataclasses import dataclass
 from typing import ClassVar, Self
 
 from pydantic import model_validator
@@ -7,7 +8,22 @@ from pydantic import model_validator
 from .attachment import AnyAttachment
 from .part import Part
 from .quantity import Quantity, of_engine, of_time
+from .signal import Signal, at_start
 from .validation import Name
+
+
+@dataclass(frozen=True)
+class Driven:
+    """A quantity of a law that a signal f prescribes: base + linear f."""
+
+    signal: Signal
+    base: float
+    linear: float
+
+    @property
+    def start(self) -> float:
+        """Return its value at t = 0."""
+        return self.base + self.linear * at_start(self.signal)
 
 
 class PointForce(Part):
@@ -42,6 +58,15 @@ class PointForce(Part):
     def only_pulls(self) -> bool:
         """Return whether it has tension only, as ropes and droppers."""
         return False
+
+    def driven(self) -> dict[str, Driven]:
+        """Return the quantities of its law that signals prescribe, by the name of the engine's dof for each."""
+        return {}
+
+    @property
+    def largest(self) -> Self:
+        """Return the part with numbers in the place of its signals, to which `driven` refers."""
+        return self
 
     def at_distance(self, distance: float) -> Self:
         """Return the part complete; distance: initial distance of its points, m."""

@@ -10,13 +10,13 @@ import itertools
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import comb, pi
 from numbers import Real
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Self, get_args
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from .part import Family, Part
-from .schemas import checked
+from .schemas import Check, checked
 from .validation import check_function, finite, list_of, one_of, positive, show
 
 if TYPE_CHECKING:
@@ -34,6 +34,8 @@ CANCELLATION_TOLERANCE = 1e-12
 """Of the largest term: rounding of a sum that is zero."""
 ROOT_TOLERANCE = 1e-12
 """Rounding of the times and places at which a signal has a value, as a fraction."""
+TURN_TOLERANCE = 1e-6
+"""Imaginary part of a root of the rate, as a fraction of its interval, with which it is an extreme of the signal."""
 _RISE = np.array([0, 0, 0, 10, -15, 6, 0])
 """The polynomial from 0 to 1 over [0, 1] whose first and second derivatives vanish at both ends."""
 
@@ -477,3 +479,39 @@ def signals_of(part: Part) -> Iterator[tuple[str, Signal]]:
 
 
 AnySignal = Annotated[Signal, checked(signal, {"anyOf": [{"type": "number"}, SIGNALS.schema]})]
+
+
+def extremes(made: Signal) -> tuple[float, float]:
+    """Return bounds of a signal over all times: exact ones of its polynomials, less and plus its sine's amplitude."""
+    breaks, coefficients = made.pieces()
+    found = []
+    for piece, length in zip(coefficients, np.diff(breaks), strict=True):
+        turns = np.roots(np.polynomial.polynomial.polyder(piece)[::-1])
+        inside = turns.real[(np.abs(turns.imag) <= TURN_TOLERANCE * length) & (turns.real > 0) & (turns.real < length)]
+        found.append(np.polynomial.polynomial.polyval(np.array([0.0, *inside, length]), piece))
+    values, amplitude = np.concatenate([*found, [0.0] * (not found)]), abs(made.sine.amplitude)
+    return float(values.min() - amplitude), float(values.max() + amplitude)
+
+
+def varying(limit: Check) -> Check:
+    """Return the check of a number, kept as a number, or of a signal, at all times within the limit of another check.
+    """
+    def check(value: Any) -> float | Signal:
+        if isinstance(value, Real) and not isinstance(value, bool):
+            return limit.func(value)  # type: ignore[call-arg]  # a function of the value alone
+        made = signal(value)
+        if isinstance(made, Constant):
+            return check(made.constant)
+        try:
+            limit.func(extremes(made)[0])  # type: ignore[call-arg]
+        except ValueError as error:
+            raise ValueError(f"{error.args[0]}, the least value of the signal", *error.args[1:]) from None
+        return made
+
+    _, number = get_args(limit.json_schema_input_type)
+    return checked(check, {"anyOf": [number.schema, SIGNALS.schema]})
+
+
+def at_start(value: "float | Signal") -> float:
+    """Return a number, or the value of a signal at t = 0."""
+    return float(value.value(0.0)) if isinstance(value, Signal) else value

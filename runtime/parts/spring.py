@@ -1,11 +1,13 @@
 """Springs with dampers between two attachments."""
 
+from collections.abc import Callable
 from typing import Annotated, Self
 
 from pydantic import model_validator
 
 from .force_segments import HAS_NO_FORCE, PULLS_ALONE, ForceTable, Segment, pulling, tabulated, with_play
-from .point_force import PointForce
+from .point_force import Driven, PointForce
+from .signal import Signal, at_start, extremes, varying
 from .validation import Flag, not_negative
 
 
@@ -14,18 +16,19 @@ class Spring(PointForce):
 
     a, b: ends: ("wire", s), ("haul", s) of the material of a rope, ("A", (x, y, z)) in body axes, "A" for the origin of
         a body, or a point (x, y, z) of the ground, m
-    stiffness: N/m
-    damping: N s/m
-    length: free of force, m; by default the distance at the start
+    stiffness: a number or a signal, N/m
+    damping: N s/m, on the rate of the extension
+    length: free of force, a number or a signal, as of a rope that a winch takes in, m; by default the distance at the
+        start. Work of signals is in ``energy.external``
     tension_only: whether it has no force while it is shorter than its length; its damper then never pushes
     free_play: range of distances about its length in which neither spring nor damper acts, m
     table: tension by extension beyond the length, in the place of a stiffness
     """
 
     kind = "spring"
-    stiffness: Annotated[float, not_negative("N/m")] | None = None
+    stiffness: Annotated[float | Signal, varying(not_negative("N/m"))] | None = None
     damping: Annotated[float, not_negative("N s/m")] = 0.0
-    length: Annotated[float, not_negative("m")] | None = None
+    length: Annotated[float | Signal, varying(not_negative("m"))] | None = None
     tension_only: Flag = False
     free_play: Annotated[float, not_negative("m")] = 0.0
     table: ForceTable | None = None
@@ -42,11 +45,37 @@ class Spring(PointForce):
         """Return whether its law has several segments; a spring of zero length has tension only."""
         return self.table is not None or self.free_play > 0 or (self.tension_only and self.length != 0.0)
 
+    def driven(self) -> dict[str, Driven]:
+        """Return the quantities that its signals prescribe: the change of its length, in m, from the longest one, and
+        the factor of its stiffness, of the largest one.
+        """
+        found = {}
+        if isinstance(self.length, Signal):
+            found["length"] = Driven(self.length, -extremes(self.length)[1], 1.0)
+        if isinstance(self.stiffness, Signal):
+            found["stiffness"] = Driven(self.stiffness, 0.0, 1 / extremes(self.stiffness)[1])
+        return found
+
+    @property
+    def largest(self) -> Self:
+        """Return the spring with numbers in the place of signals, the largest values of these."""
+        return self._with_numbers(lambda made: extremes(made)[1])
+
+    @property
+    def as_started(self) -> Self:
+        """Return the spring with numbers in the place of signals, the values at t = 0."""
+        return self._with_numbers(at_start)
+
+    def _with_numbers(self, of: Callable[[Signal], float]) -> Self:
+        signals = {name: of(value) for name, value in (("length", self.length), ("stiffness", self.stiffness))
+                   if isinstance(value, Signal)}
+        return self.completed(signals) if signals else self
+
     def segments(self) -> list[Segment]:
         """Return the segments of its law."""
         if self.table is not None:
             return tabulated(self.table, self.tension_only)
-        assert self.stiffness is not None, f"{self.where} has no stiffness"
+        assert isinstance(self.stiffness, float), f"{self.where} has no number as its stiffness"
         if self.tension_only:
             return pulling(self.free_play / 2, self.stiffness)
         return with_play(self.free_play, self.stiffness)
@@ -56,7 +85,8 @@ class Spring(PointForce):
         """Return whether it has a force, and so no direction, where its points meet."""
         if self.length is None or not self.has_segments:
             return self.length != 0.0
-        meeting = next(segment for segment in self.segments() if self.length + segment.end > 0)
+        length = at_start(self.length)
+        meeting = next(segment for segment in self.as_started.segments() if length + segment.end > 0)
         return meeting.sense != HAS_NO_FORCE
 
     @property
@@ -79,6 +109,8 @@ class Spring(PointForce):
             needs = " with tension_only or free_play" * bool(self.tension_only or self.free_play)
             raise ValueError("has neither stiffness nor damping" if not needs else f"needs a stiffness{needs}",
                              "give one of them, or both" if not needs else "give a positive stiffness")
+        if isinstance(self.stiffness, Signal) and not extremes(self.stiffness)[1] > 0:
+            raise ValueError("stiffness is a signal that is never above 0", "give a positive stiffness")
         if self.table is not None:
             self.segments()
         return self

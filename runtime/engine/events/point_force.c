@@ -20,13 +20,13 @@ static double norm(int dim, const double *gap)
 }
 
 /* Returns the margin of the force of a segment on its permitted side of zero, m; infinity if it may pull and push. */
-static double margin_of_sense(const fu_point_force *between, int segment, const double *gap, const double *rate,
-                              double distance)
+static double margin_of_sense(const fu_point_force *between, const double *q, int segment, const double *gap,
+                              const double *rate, double distance)
 {
     const int sense = between->senses[segment];
-    double force[3];
+    double force[3], scaled[FU_MAX_LAW_PARAMETERS];
     if (sense != FU_PULLS_ALONE && sense != FU_PUSHES_ALONE) return INFINITY;
-    between->law->force(fu_segment_parameters(between, segment), gap, rate, force);
+    between->law->force(fu_segment_parameters(between, q, segment, scaled), gap, rate, force);
     return sense * between->compliance * fu_dot(between->dim, force, gap) / distance;
 }
 
@@ -51,13 +51,13 @@ static int free_beside(const fu_point_force *between, int segment)
 
 /* Returns the transition to a segment with a force on one side of a segment without: the distance is in it, and its
  * force has the permitted sense. */
-static transition entering(const fu_point_force *between, int segment, int side, const double *gap, const double *rate,
-                           double distance)
+static transition entering(const fu_point_force *between, const double *q, int segment, int side, const double *gap,
+                           const double *rate, double distance)
 {
     const double beyond = side * (distance - between->bounds[segment - (side < 0)]);
     int entered = fu_segment_at_distance(between, distance);
     if (side * (entered - segment) < 1) entered = segment + side;
-    return (transition){fmin(beyond, margin_of_sense(between, entered, gap, rate, distance)), entered};
+    return (transition){fmin(beyond, margin_of_sense(between, q, entered, gap, rate, distance)), entered};
 }
 
 /* Returns the nearest transition from a segment, or one that has happened. */
@@ -68,13 +68,13 @@ static transition transition_from(const fu_model *model, const fu_point_force *b
     double gap[3], rate[3];
     fu_gap(model, between, state, gap, rate);
     const double distance = norm(between->dim, gap);
-    const double sense = margin_of_sense(between, segment, gap, rate, distance);
+    const double sense = margin_of_sense(between, state->q, segment, gap, rate, distance);
     if (sense < INFINITY) found = (transition){-sense, free_beside(between, segment)};
     for (int side = -1; side <= 1; side += 2) {
         const int beside = segment + side;
         if (beside < 0 || beside >= between->n_segments) continue;
         if (between->senses[segment] == FU_HAS_NO_FORCE)
-            found = farther(found, entering(between, segment, side, gap, rate, distance));
+            found = farther(found, entering(between, state->q, segment, side, gap, rate, distance));
         else found = farther(found, (transition){side * (distance - between->bounds[segment - (side < 0)]), beside});
     }
     return found;
@@ -113,6 +113,17 @@ typedef struct {
     double distance, gap[3], rate[3], acceleration[3];
 } gap_motion;
 
+/* Makes them those that the law takes. Their speed across is that of the points, about a shorter distance. */
+static void shorten(const fu_point_force *between, const fu_state *state, gap_motion *l)
+{
+    if (between->length_dof < 0) return;
+    const double square = fu_dot(3, l->gap, l->gap), along = fu_dot(3, l->gap, l->rate);
+    const double across = fu_dot(3, l->rate, l->rate) - along * along / square;
+    const double ratio = fu_shorten_gap(between, state, l->gap, l->rate);
+    const double bend = across * (1.0 - 1.0 / ratio) / square - state->acceleration[between->length_dof] / sqrt(square);
+    for (int d = 0; d < between->dim; ++d) l->acceleration[d] += bend * l->gap[d] / ratio;
+}
+
 static gap_motion look_at(const fu_model *model, const fu_point_force *between, const fu_state *state)
 {
     gap_motion l = {.distance = 0.0};
@@ -125,6 +136,7 @@ static gap_motion look_at(const fu_model *model, const fu_point_force *between, 
             l.acceleration[d] += e ? a[d] : -a[d];
         }
     }
+    shorten(between, state, &l);
     l.distance = norm(between->dim, l.gap);
     return l;
 }
@@ -227,11 +239,11 @@ static fu_course beyond(const fu_point_force *between, int bound, int side, cons
 }
 
 /* Returns the distance of a segment's force on the wrong side of zero, m, and its rate. */
-static fu_course wrong_sense(const fu_point_force *between, int segment, const gap_motion *l)
+static fu_course wrong_sense(const fu_point_force *between, const double *q, int segment, const gap_motion *l)
 {
     const int dim = between->dim;
-    double force[3], by_gap[9], by_rate[9], change = 0.0;
-    between->law->tangent(fu_segment_parameters(between, segment), l->gap, l->rate, force, by_gap, by_rate);
+    double force[3], by_gap[9], by_rate[9], change = 0.0, scaled[FU_MAX_LAW_PARAMETERS];
+    between->law->tangent(fu_segment_parameters(between, q, segment, scaled), l->gap, l->rate, force, by_gap, by_rate);
     for (int i = 0; i < dim; ++i)
         for (int k = 0; k < dim; ++k)
             change += l->gap[i] * (by_gap[i * dim + k] * l->rate[k] + by_rate[i * dim + k] * l->acceleration[k]);
@@ -255,10 +267,11 @@ static double grazing(const fu_run *run, const fu_coupling *coupling, int which,
         if (by_sense ? sense != FU_PULLS_ALONE && sense != FU_PUSHES_ALONE
                      : bound < 0 || bound >= between->n_segments - 1)
             continue;
-        const double found = by_sense ? fu_grazing_time(wrong_sense(between, segment, &from),
-                                                        wrong_sense(between, segment, &to), -1, h, run->round_off)
-                                      : fu_grazing_time(beyond(between, bound, side, &from),
-                                                        beyond(between, bound, side, &to), -1, h, run->round_off);
+        const double found =
+            by_sense ? fu_grazing_time(wrong_sense(between, run->now.q, segment, &from),
+                                       wrong_sense(between, run->next.q, segment, &to), -1, h, run->round_off)
+                     : fu_grazing_time(beyond(between, bound, side, &from), beyond(between, bound, side, &to), -1, h,
+                                       run->round_off);
         if (found > 0.0 && (first == 0.0 || found < first)) first = found;
     }
     return first;

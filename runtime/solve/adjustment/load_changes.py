@@ -37,7 +37,7 @@ def by_values(rest: Rest, units: Mapping[int, AnyLoad]) -> dict[int, Change]:
     if not units:
         return {}
     model = rest.model
-    builder = ModelBuilder(rest.scene, model.cables, model.ropes, model.bodies)
+    builder = ModelBuilder(rest.scene, model.cables, model.ropes, model.bodies, {})
     builder.signals = Signals(model.signals)
     loads = LoadBuilder(builder)
     owners: dict[str, list[int]] = {"dead": [], "turning": [], "along": []}

@@ -304,9 +304,13 @@ class RestState(NamedArrays):
             if abs(angle - self.turned.get(label, angle)) > POSITION_TOLERANCE * (1 + abs(angle)):
                 raise SceneError("scene", f'the angle of "{label}" is {show(angle, "rad")} at t = 0, but the state to '
                                  f'start from has {show(self.turned[label], "rad")}', SIGNAL_START_REMEDY)
-        turning = {turn for rope in model.ropes for _, turn in rope.turns}  # their rates alone matter
+        driven = model.q[model.driven]
+        if np.any(np.abs(driven - self.static_state["q"][model.driven]) > POSITION_TOLERANCE * (1 + np.abs(driven))):
+            raise SceneError("scene", "a length, a stiffness or a temperature that a signal prescribes is at t = 0 "
+                             "another than in the state to start from", SIGNAL_START_REMEDY)
+        others = {*model.driven, *(turn for rope in model.ropes for _, turn in rope.turns)}  # of turns the rates matter
         moved = {dof: abs(value - self.static_state["q"][dof]) * model.weight[dof]
-                 for dof, value in model.prescribed_at(0.0).items() if dof not in turning}
+                 for dof, value in model.prescribed_at(0.0).items() if dof not in others}
         lengths = [*(cable.mesh.total for cable in model.cables), *(rope.route.length for rope in model.ropes)]
         if moved and (most := max(moved.values())) > POSITION_TOLERANCE * max(lengths):
             raise SceneError("scene", f"a motion begins {show(most, 'm')} from where the state to start from has it",

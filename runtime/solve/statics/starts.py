@@ -41,6 +41,7 @@ def fitted(kept: dict[str, np.ndarray], model: Model) -> dict[str, np.ndarray]:
     q = kept["q"].copy()
     for rope in model.ropes:
         q[rope.held] = model.q[rope.held]
+    q[model.driven] = model.q[model.driven]
     if not model.cables:
         return kept | {"q": q}
     own = slice(0, model.cables[-1].coordinates.stop)

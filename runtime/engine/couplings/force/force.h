@@ -24,7 +24,13 @@ typedef struct {
     const double *bounds; /* (n_segments - 1), m */
     const int *senses;    /* (n_segments): permitted senses of each segment */
     double compliance;    /* m/N: converts forces to lengths, for comparison */
+    /* Dofs that signals prescribe, -1 for none: by how much all lengths of the parameters are longer, m, never above
+     * zero; the factor of the stiffness, of the parameters marked in `stiffnesses`. */
+    int length_dof, stiffness_dof;
+    const int *stiffnesses; /* (n_parameters): nonzero for those in proportion to the stiffness */
 } fu_point_force;
+
+#define FU_MAX_LAW_PARAMETERS 8
 
 extern const fu_coupling_type fu_point_force_type;
 
@@ -33,12 +39,19 @@ extern const fu_coupling_type fu_point_force_type;
 void fu_add_force_change(const fu_model *model, const fu_point_force *between, const fu_state *state, int segment,
                          double factor, double *f);
 
-/* couplings/force/segments.c; the first computes the gap between the points and, unless null, its rate. */
+/* couplings/force/segments.c; the first computes the gap between the points and, unless null, its rate; the second
+ * makes them those that the law takes, along the same line and shorter by a prescribed change of length, and returns
+ * the ratio of the gaps; fu_gap does both. */
+void fu_gap_of_points(const fu_model *model, const fu_point_force *between, const fu_state *state, double gap[3],
+                      double *rate);
+double fu_shorten_gap(const fu_point_force *between, const fu_state *state, double gap[3], double *rate);
 void fu_gap(const fu_model *model, const fu_point_force *between, const fu_state *state, double gap[3], double *rate);
 int fu_force_segment(const fu_point_force *between, const fu_state *state);
 int fu_segment_at(const fu_model *model, const fu_point_force *between, const fu_state *state);
 int fu_segment_at_distance(const fu_point_force *between, double distance);
-const double *fu_segment_parameters(const fu_point_force *between, int segment);
+/* Returns the parameters of a segment in a configuration, in `scaled` where a signal prescribes the stiffness. */
+const double *fu_segment_parameters(const fu_point_force *between, const double *q, int segment,
+                                    double scaled[FU_MAX_LAW_PARAMETERS]);
 void fu_detect_segment(const fu_model *model, const fu_coupling *coupling, fu_state *state);
 
 /* A force of constant direction in the dofs: values on n dofs, times a signal (-1: one). */

@@ -9,11 +9,12 @@
 #include <string.h>
 
 /* Computes the force on the first point by the law of a segment. */
-static void force_of_segment(const fu_point_force *between, int segment, const double gap[3], const double rate[3],
-                             double force[3])
+static void force_of_segment(const fu_point_force *between, const double *q, int segment, const double gap[3],
+                             const double rate[3], double force[3])
 {
+    double scaled[FU_MAX_LAW_PARAMETERS];
     if (between->senses[segment] == FU_HAS_NO_FORCE) memset(force, 0, sizeof(double[3]));
-    else between->law->force(fu_segment_parameters(between, segment), gap, rate, force);
+    else between->law->force(fu_segment_parameters(between, q, segment, scaled), gap, rate, force);
 }
 
 /* Computes the force on the first point by the law. */
@@ -22,7 +23,7 @@ static void force_at(const fu_model *model, const fu_coupling *coupling, const f
     const fu_point_force *between = (const fu_point_force *)coupling;
     double gap[3], rate[3];
     fu_gap(model, between, state, gap, rate);
-    force_of_segment(between, fu_force_segment(between, state), gap, rate, force);
+    force_of_segment(between, state->q, fu_force_segment(between, state), gap, rate, force);
 }
 
 static double length(int dim, const double *gap)
@@ -30,42 +31,69 @@ static double length(int dim, const double *gap)
     return sqrt(fu_dot(dim, gap, gap));
 }
 
-/* A path over several segments of a law without a damper: the distances at its ends, m, and the mean tension, N. */
+/* A step as a path of the distance that the law takes: that at its ends, m, the mean tension, N, the power that it
+ * dissipates, W, and the mean direction from point to point, whose product with the change of the gap between them is
+ * the change of their distance. */
 typedef struct {
-    double from, to, tension;
+    double from, to, tension, power, along[3], apart; /* apart: twice the mean distance of the points, m */
 } point_motion;
 
-/* Returns the path from one gap to another. The tension of each segment counts by its share of the path: the work of
- * the mean on the path is the change of the energy. */
-static point_motion path_of(const fu_point_force *between, const double gap[3], const double gap_next[3])
+/* Returns the path of a step without its tension. */
+static point_motion path_of(const fu_model *model, const fu_point_force *between, const fu_equations *at)
 {
     const int dim = between->dim;
-    const double from = length(dim, gap), to = length(dim, gap_next), low = fmin(from, to), high = fmax(from, to);
-    double work = 0.0;
+    double gap[3], gap_next[3];
+    point_motion w = {.power = 0.0};
+    fu_gap(model, between, at->now, gap, 0);
+    fu_gap(model, between, at->next, gap_next, 0);
+    w.from = length(dim, gap), w.to = length(dim, gap_next);
+    if (between->length_dof >= 0) {
+        fu_gap_of_points(model, between, at->now, gap, 0);
+        fu_gap_of_points(model, between, at->next, gap_next, 0);
+    }
+    w.apart = length(dim, gap) + length(dim, gap_next);
+    for (int d = 0; d < dim; ++d) w.along[d] = (gap[d] + gap_next[d]) / w.apart;
+    return w;
+}
+
+/* Returns the mean tension over a path, the power of which is in `power`. */
+static double tension_in(const fu_point_force *between, const double *q, int segment, double h, double from, double to,
+                         double *power)
+{
+    const double start[3] = {from, 0.0, 0.0}, end[3] = {to, 0.0, 0.0};
+    double tension[3], scaled[FU_MAX_LAW_PARAMETERS];
+    *power = 0.0;
+    if (between->senses[segment] == FU_HAS_NO_FORCE) return 0.0;
+    between->law->discrete_force(fu_segment_parameters(between, q, segment, scaled), h, start, end, tension, power);
+    return tension[0];
+}
+
+/* Returns the mean tension over a path through several segments of a law without a damper. Each counts by its share of
+ * the path: the work of the mean on the path is the change of the energy. */
+static double tension_over(const fu_point_force *between, const double *q, const point_motion *w)
+{
+    const double low = fmin(w->from, w->to), high = fmax(w->from, w->to);
+    double work = 0.0, unused;
     for (int segment = 0; segment < between->n_segments; ++segment) {
         const double a = segment > 0 ? fmax(low, between->bounds[segment - 1]) : low;
         const double b = segment < between->n_segments - 1 ? fmin(high, between->bounds[segment]) : high;
-        const double start[3] = {a, 0.0, 0.0}, end[3] = {b, 0.0, 0.0};
-        double tension[3], unused;
-        if (!(b > a) || between->senses[segment] == FU_HAS_NO_FORCE) continue;
-        between->law->discrete_force(fu_segment_parameters(between, segment), 1.0, start, end, tension, &unused);
-        work += tension[0] * (b - a);
+        if (b > a) work += tension_in(between, q, segment, 1.0, a, b, &unused) * (b - a);
     }
-    return (point_motion){from, to, work / (high - low)};
+    return work / (high - low);
 }
 
 /* Computes the derivatives of the mean force by the gap in the middle, which moves by half of its end: those across the
  * mean direction belong to the mean tension. */
-static void mean_stiffness(const fu_point_force *between, const double gap[3], const double gap_next[3], int segment,
+static void mean_stiffness(const fu_model *model, const fu_point_force *between, const fu_equations *at, int segment,
                            double by_gap[9])
 {
-    const point_motion w = path_of(between, gap, gap_next);
+    const point_motion w = path_of(model, between, at);
     const int dim = between->dim;
-    const double end[3] = {w.to, 0.0, 0.0}, rate[3] = {0.0, 0.0, 0.0};
-    double tension[3], e[3];
-    force_of_segment(between, segment, end, rate, tension);
-    const double along = 2.0 * (tension[0] - w.tension) / (w.to - w.from), across = 2.0 * w.tension / (w.from + w.to);
-    for (int d = 0; d < dim; ++d) e[d] = (gap[d] + gap_next[d]) / (w.from + w.to);
+    const double end[3] = {w.to, 0.0, 0.0}, rate[3] = {0.0, 0.0, 0.0}, *e = w.along;
+    double tension[3];
+    force_of_segment(between, at->middle->q, segment, end, rate, tension);
+    const double mean = tension_over(between, at->middle->q, &w);
+    const double along = 2.0 * (tension[0] - mean) / (w.to - w.from), across = 2.0 * mean / w.apart;
     for (int d = 0; d < dim; ++d)
         for (int k = 0; k < dim; ++k) by_gap[d * dim + k] = (along - across) * e[d] * e[k] + (d == k ? across : 0.0);
 }
@@ -89,20 +117,57 @@ static double step_force(const fu_model *model, const fu_coupling *coupling, con
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
     const int several = is_of_several(model, between, at), segment = step_segment(model, between, at);
-    double gap[3], gap_next[3], power;
+    double gap[3], gap_next[3], power = 0.0, scaled[FU_MAX_LAW_PARAMETERS];
     if (!several && between->senses[segment] == FU_HAS_NO_FORCE) {
         memset(force, 0, sizeof(double[3]));
         return 0.0;
     }
+    if (several || between->length_dof >= 0) {
+        const point_motion w = path_of(model, between, at);
+        const double tension = several ? tension_over(between, at->middle->q, &w)
+                                       : tension_in(between, at->middle->q, segment, at->h, w.from, w.to, &power);
+        for (int d = 0; d < between->dim; ++d) force[d] = tension * w.along[d];
+        return power;
+    }
     fu_gap(model, between, at->now, gap, 0);
     fu_gap(model, between, at->next, gap_next, 0);
-    if (several) {
-        const point_motion w = path_of(between, gap, gap_next);
-        for (int d = 0; d < between->dim; ++d) force[d] = w.tension * (gap[d] + gap_next[d]) / (w.from + w.to);
-        return 0.0;
-    }
-    between->law->discrete_force(fu_segment_parameters(between, segment), at->h, gap, gap_next, force, &power);
+    between->law->discrete_force(fu_segment_parameters(between, at->middle->q, segment, scaled), at->h, gap, gap_next,
+                                 force, &power);
     return power;
+}
+
+/* Returns the energy stored at a state, J, by the law at its own stiffness or at that of the configuration q: of the
+ * segment of the points' distance, whether the force follows its law or not. */
+static double stored(const fu_model *model, const fu_point_force *between, const fu_state *state, const double *q)
+{
+    const int segment = fu_segment_at(model, between, state);
+    double gap[3], energy, scaled[FU_MAX_LAW_PARAMETERS];
+    const double *parameters = between->parameters + (long)segment * between->n_parameters;
+    if (between->senses[segment] == FU_HAS_NO_FORCE) return 0.0;
+    if (q) parameters = fu_segment_parameters(between, q, segment, scaled);
+    fu_gap(model, between, state, gap, 0);
+    between->law->energy(parameters, gap, &energy);
+    return energy;
+}
+
+/* Adds the derivative of the energy by the factor of the stiffness to the force on its dof: at a state, or the mean of
+ * both ends of a step, whose work is the change of the energy beyond that by the mean stiffness. */
+static void add_stiffness_force(const fu_model *model, const fu_point_force *between, const fu_state *state,
+                                const fu_state *next, double *f)
+{
+    if (between->stiffness_dof < 0) return;
+    const double here = stored(model, between, state, 0);
+    f[between->stiffness_dof] += next ? 0.5 * (here + stored(model, between, next, 0)) : here;
+}
+
+/* Adds minus the tension of a force on the first point to the force on the dof of the length. */
+static void add_length_force(const fu_model *model, const fu_point_force *between, const fu_state *state,
+                             const fu_state *next, const double *force, double *f)
+{
+    if (between->length_dof < 0) return;
+    const fu_equations step = {.now = state, .next = next ? next : state};
+    const double *along = path_of(model, between, &step).along;
+    f[between->length_dof] -= fu_dot(between->dim, force, along) / fu_dot(between->dim, along, along);
 }
 
 /* Adds a force on the first point, and its opposite on the second, to the left side of the equations of motion: at a
@@ -116,6 +181,7 @@ static void add_forces(const fu_model *model, const fu_point_force *between, con
         if (next) fu_add_point_over_step(model, on, state, next, force, sign, f);
         else fu_add_force_at(model, on, state, force, sign, f);
     }
+    add_length_force(model, between, state, next, force, f);
 }
 
 void fu_add_force_change(const fu_model *model, const fu_point_force *between, const fu_state *state, int segment,
@@ -123,8 +189,8 @@ void fu_add_force_change(const fu_model *model, const fu_point_force *between, c
 {
     double gap[3], rate[3], force[3], other[3];
     fu_gap(model, between, state, gap, rate);
-    force_of_segment(between, fu_force_segment(between, state), gap, rate, force);
-    force_of_segment(between, segment, gap, rate, other);
+    force_of_segment(between, state->q, fu_force_segment(between, state), gap, rate, force);
+    force_of_segment(between, state->q, segment, gap, rate, other);
     for (int d = 0; d < between->dim; ++d) force[d] = factor * (force[d] - other[d]);
     add_forces(model, between, state, 0, force, f);
 }
@@ -143,6 +209,7 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
 {
     double force[3];
     add_forces(model, (const fu_point_force *)coupling, at->next, 0, at->next->forces + coupling->force, f);
+    add_stiffness_force(model, (const fu_point_force *)coupling, at->next, 0, f);
     force_at(model, coupling, at->next, force);
     internal_residual(coupling, at, force, internal);
 }
@@ -152,8 +219,21 @@ static void step_residual(const fu_model *model, const fu_coupling *coupling, co
 {
     double force[3];
     add_forces(model, (const fu_point_force *)coupling, at->now, at->next, at->next->forces + coupling->force, f);
+    add_stiffness_force(model, (const fu_point_force *)coupling, at->now, at->next, f);
     step_force(model, coupling, at, force);
     internal_residual(coupling, at, force, internal);
+}
+
+/* Makes derivatives by the gap that the law takes those by the gap of the points, `ratio` of which it is: along the
+ * line from point to point both change alike. */
+static void by_points(int dim, const double *gap, double ratio, double by_gap[9])
+{
+    const double square = fu_dot(dim, gap, gap);
+    for (int d = 0; d < dim; ++d) {
+        const double along = fu_dot(dim, by_gap + d * dim, gap) / square;
+        for (int k = 0; k < dim; ++k)
+            by_gap[d * dim + k] = ratio * by_gap[d * dim + k] + (1.0 - ratio) * along * gap[k];
+    }
 }
 
 /* Adds the derivatives of the equations at a state to a system, by the law of a segment; internal: the forces; psi as
@@ -166,7 +246,7 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
     const int dim = between->dim, row = fu_extra(model, coupling->unknown);
     const double unit = fu_row_unit(weights.inertia, coupling->scale[0]), stiffness = weights.stiffness;
     double gap[3], rate[3], force[3], by_gap[9] = {0.0}, by_rate[9] = {0.0}, by[18];
-    double changes[3 * FU_ATTACHMENT_COORDINATES];
+    double changes[3 * FU_ATTACHMENT_COORDINATES], scaled[FU_MAX_LAW_PARAMETERS];
     fu_point_motion motions[2];
     for (int e = 0; e < 2; ++e)
         fu_point_motion_at(model, &between->attachments[e], state, FU_POINT, internal, 0, psi, weights.rate,
@@ -175,9 +255,12 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
         gap[d] = motions[1].at.p[d] - motions[0].at.p[d];
         rate[d] = motions[1].at.v[d] - motions[0].at.v[d];
     }
+    const double taken = fu_shorten_gap(between, state, gap, rate);
     if (known) memcpy(by_gap, known, sizeof by_gap);
     else if (between->senses[segment] != FU_HAS_NO_FORCE)
-        between->law->tangent(fu_segment_parameters(between, segment), gap, rate, force, by_gap, by_rate);
+        between->law->tangent(fu_segment_parameters(between, state->q, segment, scaled), gap, rate, force, by_gap,
+                              by_rate);
+    if (!known && between->length_dof >= 0) by_points(dim, gap, taken, by_gap);
     for (int d = 0; d < dim; ++d) {
         memcpy(by + 2 * d * dim, by_gap + d * dim, sizeof(double) * (size_t)dim);
         memcpy(by + (2 * d + 1) * dim, by_rate + d * dim, sizeof(double) * (size_t)dim);
@@ -210,12 +293,8 @@ static void step_tangent(const fu_model *model, const fu_coupling *coupling, con
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
     const int several = is_of_several(model, between, at), segment = step_segment(model, between, at);
-    double gap[3], gap_next[3], by_gap[9];
-    if (several) {
-        fu_gap(model, between, at->now, gap, 0);
-        fu_gap(model, between, at->next, gap_next, 0);
-        mean_stiffness(between, gap, gap_next, segment, by_gap);
-    }
+    double by_gap[9];
+    if (several) mean_stiffness(model, between, at, segment, by_gap);
     matrix(model, coupling, at->middle, segment, at->next->forces + coupling->force, 0, several ? by_gap : 0,
            at->weights, system);
 }
@@ -231,6 +310,7 @@ static void add_force(const fu_model *model, const fu_coupling *coupling, const 
     double force[3];
     force_at(model, coupling, state, force);
     add_forces(model, (const fu_point_force *)coupling, state, 0, force, f);
+    add_stiffness_force(model, (const fu_point_force *)coupling, state, 0, f);
 }
 
 /* work: null in equilibrium, where the force is an unknown. */
@@ -247,16 +327,9 @@ static void take_forces(const fu_model *model, const fu_coupling *coupling, cons
     outputs(model, coupling, state, 0, work, state->forces + coupling->force);
 }
 
-/* Returns the stored energy, J: of the segment of the points' distance, whether the force follows its law or not. */
 static double energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
-    const fu_point_force *between = (const fu_point_force *)coupling;
-    const int segment = fu_segment_at(model, between, state);
-    double gap[3], stored;
-    if (between->senses[segment] == FU_HAS_NO_FORCE) return 0.0;
-    fu_gap(model, between, state, gap, 0);
-    between->law->energy(fu_segment_parameters(between, segment), gap, &stored);
-    return stored;
+    return stored(model, (const fu_point_force *)coupling, state, state->q);
 }
 
 static double dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
@@ -264,11 +337,11 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
     const int segment = fu_force_segment(between, state);
-    double gap[3], rate[3], power;
+    double gap[3], rate[3], power, scaled[FU_MAX_LAW_PARAMETERS];
     (void)work;
     if (!coupling->is_damped || between->senses[segment] == FU_HAS_NO_FORCE) return 0.0;
     fu_gap(model, between, state, gap, rate);
-    between->law->dissipation(fu_segment_parameters(between, segment), gap, rate, &power);
+    between->law->dissipation(fu_segment_parameters(between, state->q, segment, scaled), gap, rate, &power);
     return power;
 }
 
@@ -299,6 +372,9 @@ static const fu_field fields[] = {
     FU_FIELD(fu_point_force, bounds, FU_REALS, 0),
     FU_FIELD(fu_point_force, senses, FU_INTEGERS, 0),
     FU_FIELD(fu_point_force, compliance, FU_REAL, 0),
+    FU_FIELD(fu_point_force, length_dof, FU_INTEGER, 0),
+    FU_FIELD(fu_point_force, stiffness_dof, FU_INTEGER, 0),
+    FU_FIELD(fu_point_force, stiffnesses, FU_INTEGERS, 0),
     {0},
 };
 

@@ -20,9 +20,14 @@ int fu_force_segment(const fu_point_force *between, const fu_state *state)
     return state->flags[between->base.flags];
 }
 
-const double *fu_segment_parameters(const fu_point_force *between, int segment)
+const double *fu_segment_parameters(const fu_point_force *between, const double *q, int segment,
+                                    double scaled[FU_MAX_LAW_PARAMETERS])
 {
-    return between->parameters + (long)segment * between->n_parameters;
+    const double *given = between->parameters + (long)segment * between->n_parameters;
+    if (between->stiffness_dof < 0) return given;
+    for (int i = 0; i < between->n_parameters; ++i)
+        scaled[i] = between->stiffnesses[i] ? q[between->stiffness_dof] * given[i] : given[i];
+    return scaled;
 }
 
 /* Returns the segment of a distance. */
@@ -33,7 +38,8 @@ int fu_segment_at_distance(const fu_point_force *between, double distance)
     return segment;
 }
 
-void fu_gap(const fu_model *model, const fu_point_force *between, const fu_state *state, double gap[3], double *rate)
+void fu_gap_of_points(const fu_model *model, const fu_point_force *between, const fu_state *state, double gap[3],
+                      double *rate)
 {
     double p[2][3], v[2][3];
     for (int e = 0; e < 2; ++e) fu_point_at(model, &between->attachments[e], state, p[e], rate ? v[e] : 0, 0);
@@ -41,6 +47,24 @@ void fu_gap(const fu_model *model, const fu_point_force *between, const fu_state
         gap[d] = p[1][d] - p[0][d];
         if (rate) rate[d] = v[1][d] - v[0][d];
     }
+}
+
+double fu_shorten_gap(const fu_point_force *between, const fu_state *state, double gap[3], double *rate)
+{
+    if (between->length_dof < 0) return 1.0;
+    const double distance = sqrt(fu_dot(between->dim, gap, gap));
+    const double ratio = (distance - state->q[between->length_dof]) / distance;
+    for (int d = 0; d < between->dim; ++d) {
+        if (rate) rate[d] -= state->v[between->length_dof] / distance * gap[d];
+        gap[d] *= ratio;
+    }
+    return ratio;
+}
+
+void fu_gap(const fu_model *model, const fu_point_force *between, const fu_state *state, double gap[3], double *rate)
+{
+    fu_gap_of_points(model, between, state, gap, rate);
+    fu_shorten_gap(between, state, gap, rate);
 }
 
 /* Returns the segment of the distance of the points. */

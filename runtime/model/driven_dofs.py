@@ -1,0 +1,51 @@
+"""Degrees of freedom of quantities that a signal prescribes and that belong to no node or body.
+
+They stand between the dofs of ropes and those of bodies. Lengths and stiffnesses of springs change with them as
+positions do with those of a prescribed motion: the force on such a dof is the derivative of the energy, and its work is
+that of a support.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..parts.point_force import Driven
+from ..parts.scene_data import SceneData
+from .model import MotionModel
+from .signals import Signals
+
+
+@dataclass(eq=False, repr=False)
+class DrivenDofs:
+    """The driven quantities of a scene, by part (`Part.where`) and quantity, whose dofs begin at `first`."""
+
+    first: int
+    driven: dict[tuple[str, str], Driven]
+
+    @classmethod
+    def of(cls, scene: SceneData, first: int) -> DrivenDofs:
+        """Return those of a scene."""
+        return cls(first, {(part.where, what): driven for part in scene.point_forces.values()
+                           for what, driven in part.driven().items()})
+
+    @property
+    def dofs(self) -> dict[tuple[str, str], int]:
+        """Return their dofs."""
+        return {key: self.first + k for k, key in enumerate(self.driven)}
+
+    @property
+    def stop(self) -> int:
+        """Return the dof behind the last one."""
+        return self.first + len(self.driven)
+
+    def motions(self, signals: Signals) -> list[MotionModel]:
+        """Return how they follow their signals, which are stored."""
+        return [MotionModel(dof, signals.add(each.signal), each.base, each.linear, 0.0, 0.0)
+                for dof, each in enumerate(self.driven.values(), self.first)]
+
+    @property
+    def start(self) -> np.ndarray:
+        """Return (n,): the values at t = 0."""
+        return np.array([each.start for each in self.driven.values()])
