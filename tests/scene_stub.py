@@ -101,7 +101,7 @@ def given_type(kind: type[Part], keyword: str, optional: bool) -> str:
     else:
         bare = written.removeprefix("Annotated[")
         word = bare.replace("|", " ").replace(",", " ").replace("[", " ").replace("]", " ").split()[0]
-        found = TYPES[word]
+        found = TYPES["AnySignal" if bare.startswith("float | Signal") else word]
     return f"{found} | None" if optional else found
 
 

@@ -38,6 +38,8 @@ def build(scene: SceneData, supplied: bool = False) -> Model:
         n_flexible = cables[-1].coordinates.stop
     ropes = rope_models(scene, n_flexible, supplied)
     driven = DrivenDofs.of(scene, ropes[-1].coordinates.stop if ropes else n_flexible)
+    for each, part in zip(cables, scene.cables.values(), strict=True):
+        driven.let_grow(each, part.where)
     bodies = body_models(scene, driven.stop)
     nodal = [cable.vectors[..., :dim].copy() for cable in drawn]
     level_tied_slopes(scene, nodal)

@@ -29,7 +29,7 @@ class CableArrays:
         self._gravity: tuple[bytes, np.ndarray] | None = None
 
     def model(self, first: int) -> CableModel:
-        """Return its model, whose coordinates begin at ``first``."""
+        """Return its model, whose coordinates begin at ``first``, without its growth."""
         cable, mesh = self.cable, self.cable.mesh
         vectors = cable.kind_of_element.nodal_vectors
         pieces = tuple(CablePiece(piece.end, piece.material.damping_time, piece.material.mass_damping,

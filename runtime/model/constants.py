@@ -13,6 +13,8 @@ from ..kernels.libraries import kernels_of, of_library
 from ..parts.cable import Cable
 from ..parts.section_stiffness import section_stiffness
 
+GROWTH_POWERS = {"r": 1.0, "r_xx": -1.0}
+"""Powers of the growth factor of the vectors of a stress-free shape."""
 POINTS = 5
 """Gauss points along an element: exact for a straight stress-free shape, of the eighth degree."""
 PLANAR = 4
@@ -25,8 +27,10 @@ def constants(cable: Cable, axial: float = 1.0,
 
     axial: a factor of EA, of a cable's law alone; change: of the stiffness of a section.
     """
-    reference = cable.reference
-    lengths = cable.mesh.all_lengths if cable.is_curved and reference is not None else cable.mesh.lengths
+    growth, reference = cable.growth.start, cable.reference
+    lengths = growth * (cable.mesh.all_lengths if cable.is_curved and reference is not None else cable.mesh.lengths)
+    if reference is not None and growth != 1.0:
+        reference = grown_shape(cable, reference, np.array(growth))
     sections = [section_stiffness(cable.stiffness_law, piece.section, piece.material, cable.dim)
                 for piece in cable.uniform_pieces]
     if axial != 1.0:  # of EA, EI, and EA of the upper modes of an assumed strain
@@ -39,6 +43,12 @@ def constants(cable: Cable, axial: float = 1.0,
                             for piece, S in zip(cable.uniform_pieces, sections, strict=True)))
     return np.array([element_constants(cable.library, cable.element, cable.kernel_law, float(length), S, e0)
                      for length, S, e0 in zip(lengths, each, shapes, strict=True)])
+
+
+def grown_shape(cable: Cable, shape: np.ndarray, growth: np.ndarray) -> np.ndarray:
+    """Return stress-free shapes of elements (..., 2 vectors, dim) after growth by factors (...): their angles stay."""
+    powers = np.array([GROWTH_POWERS.get(name, 0.0) for name in cable.kind_of_element.nodal_vectors] * 2)
+    return np.asarray(shape * growth[..., None, None] ** powers[:, None])
 
 
 def element_constants(library: str | None, element: str, law: str, length: float, S: np.ndarray,

@@ -1,8 +1,8 @@
 """Degrees of freedom of quantities that a signal prescribes and that belong to no node or body.
 
-They stand between the dofs of ropes and those of bodies. Lengths and stiffnesses of springs change with them as
-positions do with those of a prescribed motion: the force on such a dof is the derivative of the energy, and its work is
-that of a support.
+They stand between the dofs of ropes and those of bodies. Growth factors of cables, lengths and stiffnesses of springs
+change with them as positions do with those of a prescribed motion: the force on such a dof is the derivative of the
+energy, and its work is that of a support. A growth factor other than 1 has one where it is constant, too.
 """
 
 from __future__ import annotations
@@ -11,10 +11,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..parts.point_force import Driven
+from ..parts.cable import Cable
+from ..parts.driven import GROWTH, Driven
+from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
-from .model import MotionModel
+from .model import CableModel, MotionModel
 from .signals import Signals
+
+BENDING = 1
+"""Place of EI among the constants of the laws of cables."""
 
 
 @dataclass(eq=False, repr=False)
@@ -27,8 +32,18 @@ class DrivenDofs:
     @classmethod
     def of(cls, scene: SceneData, first: int) -> DrivenDofs:
         """Return those of a scene."""
-        return cls(first, {(part.where, what): driven for part in scene.point_forces.values()
-                           for what, driven in part.driven().items()})
+        parts: list[Cable | PointForce] = [*scene.cables.values(), *scene.point_forces.values()]
+        return cls(first, {(part.where, what): driven for part in parts for what, driven in part.driven().items()})
+
+    def let_grow(self, cable: CableModel, where: str) -> None:
+        """Give a cable, named `where` in messages, the dof of its growth factor."""
+        driven = self.driven.get((where, GROWTH))
+        if driven is None:
+            return
+        cable.growth = self.dofs[where, GROWTH]
+        if driven.signal is not None:
+            cable.growth_constants = cable.A.copy()
+            cable.growth_constants[:, BENDING] *= -1
 
     @property
     def dofs(self) -> dict[tuple[str, str], int]:
@@ -43,7 +58,7 @@ class DrivenDofs:
     def motions(self, signals: Signals) -> list[MotionModel]:
         """Return how they follow their signals, which are stored."""
         return [MotionModel(dof, signals.add(each.signal), each.base, each.linear, 0.0, 0.0)
-                for dof, each in enumerate(self.driven.values(), self.first)]
+                for dof, each in enumerate(self.driven.values(), self.first) if each.signal is not None]
 
     @property
     def start(self) -> np.ndarray:

@@ -36,6 +36,22 @@ from .signals import Signals
 from .span_coordinates import AlongSpan, SpanCoordinates
 from .unknowns import Node
 
+ARC_LENGTH_ORDERS = {"r_x": 1, "r_xx": 2}
+"""Order of the derivative by the arc-length of nodal vectors."""
+
+
+def orders_of(vectors: Sequence[str]) -> np.ndarray:
+    """Return (vectors,): the orders of the derivatives by the arc-length that nodal vectors are."""
+    return np.array([ARC_LENGTH_ORDERS.get(name, 0) for name in vectors])
+
+
+def per_grown(vectors: Sequence[str], growth: np.ndarray) -> np.ndarray:
+    """Return (..., 2 vectors, 1): factors of the vectors of elements, and of the forces on them, that grow by factors
+    (...): derivatives by the grown arc-length, see engine/bodies/growth.c.
+    """
+    return np.asarray(growth[..., None, None] ** -np.tile(orders_of(vectors), 2)[:, None].astype(float))
+
+
 K = TypeVar("K", bound=CouplingModel)
 
 
@@ -69,7 +85,9 @@ class CableModel:
     """One cable: constants of its elements and the position of its coordinates.
 
     pieces: in their order. m: (1 or elements, nodal vectors, nodal vectors) of an element; A: (1 or elements,
-    constants). share: (vectors,) `Hull.share`, None where no coupling needs it.
+    constants). share: (vectors,) `Hull.share`, None where no coupling needs it. growth: dof of the growth factor of the
+    stress-free length, -1 for none; growth_constants: A with negative bending stiffness, where a signal prescribes it
+    (engine/bodies/growth.c).
     """
 
     name: str
@@ -84,6 +102,8 @@ class CableModel:
     vectors: tuple[str, ...]
     library: str | None
     share: np.ndarray | None = None
+    growth: int = -1
+    growth_constants: np.ndarray | None = None
 
     @property
     def n_elements(self) -> int:
@@ -120,6 +140,20 @@ class CableModel:
         size = math.prod(self.shape[1:])
         first = self.first + int(self.mesh.first_node(element)) * size
         return slice(first, first + 2 * size)
+
+    @property
+    def orders(self) -> np.ndarray:
+        """Return (vectors,): orders of the derivatives by the arc-length that its nodal vectors are."""
+        return orders_of(self.vectors)
+
+    def growth_in(self, q: np.ndarray) -> np.ndarray:
+        """Return the growth factor in configurations q (..., n): (...)."""
+        return np.ones(q.shape[:-1]) if self.growth < 0 else q[..., self.growth]
+
+    def strained(self, q: np.ndarray) -> np.ndarray:
+        """Return `nodal` over the growth factor: the stretch of the centreline is the length of its slope."""
+        vectors = self.nodal(q)
+        return vectors if self.growth < 0 else vectors / self.growth_in(q)[..., None, None, None]
 
     def nodal(self, q: np.ndarray) -> np.ndarray:
         """Return its part of coordinates, rates or numbers of dofs (..., n) as (..., nodes, vectors, dim)."""
@@ -329,6 +363,15 @@ class Model:
             f = self.signals[m.signal].at(t)
             value = m.base + m.linear * f + m.cosine * np.cos(f) + m.sine * np.sin(f)
             found[m.dof] = found.get(m.dof, 0.0) + value
+        return found
+
+    def driven_in(self, time: np.ndarray, derivative: int = 0) -> np.ndarray:
+        """Return (T, driven): the driven quantities, or their rates, at times (T,) in s."""
+        found = np.zeros((len(time), len(self.driven))) + (self.q[self.driven] if derivative == 0 else 0.0)
+        for m in self.motions:
+            if m.dof in self.driven:
+                values = m.linear * self.signals[m.signal].value(time, derivative)
+                found[:, m.dof - self.driven.start] = values + (m.base if derivative == 0 else 0.0)
         return found
 
     def results(self, part: str, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:

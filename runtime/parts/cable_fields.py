@@ -19,6 +19,8 @@ from .part import Part
 from .piece import Pieces, UniformPiece
 from .schemas import ONLY_PYTHON, POINT, FileEntry, GivenAs, Turning, checked, list_of_lists
 from .section import AnySection, Section, outer_radius_of
+from .signal import Signal, varying
+from .thermal import TEMPERATURE
 from .validation import Count, Name, Points, Vector, one_of, positive, shown, xyz
 
 
@@ -79,7 +81,8 @@ class CableFields(Part):
     given_material: Annotated[Material | None, Field(alias="material", validate_default=True), UNLESS_PIECES] = None
     up: Annotated[Vector, xyz()] = (0.0, 1.0, 0.0)
     rest: Annotated[str, one_of(("drawn", "straight"))] = "drawn"
-    rest_length: Annotated[float, positive("m")] | None = None
+    rest_length: Annotated[float | Signal, varying(positive("m"))] | None = None
+    temperature: Annotated[float | Signal, TEMPERATURE] | None = None
     velocity: Annotated[Vector, xyz("m/s")] = (0.0, 0.0, 0.0)
     angular_velocity: Annotated[Vector, xyz("rad/s")] = (0.0, 0.0, 0.0)
 

@@ -15,9 +15,11 @@ from ..kernels.elements import LawTraits
 from ..kernels.mesh import Mesh
 from . import cable_drawing, cable_mesh, curves
 from .cable_fields import CableFields
+from .driven import GROWTH, Driven
 from .piece import UniformPiece
 from .plane import Plane
 from .section_stiffness import kernel_law, section_stiffness
+from .signal import Signal, at_start
 from .validation import LENGTH_TOLERANCE, Vector
 
 if TYPE_CHECKING:
@@ -47,15 +49,38 @@ class DrawnCable(Fields):
 
     @property
     def length(self) -> float:
-        """Return the undeformed length in m."""
+        """Return the undeformed length in m, at t = 0 and without its temperature: the range of s."""
         if self.pieces is not None:
             return sum(piece.length for piece in self.pieces)
-        return self.drawn_length if self.rest_length is None else self.rest_length
+        return self.drawn_length if self.rest_length is None else at_start(self.rest_length)
 
     @property
     def stretch(self) -> float:
         """Return the drawn length over the undeformed length."""
         return 1.0 if self.rest_length is None and self.pieces is None else self.drawn_length / self.length
+
+    @property
+    def growth(self) -> Driven:
+        """Return the factor of its stress-free length, by its temperature and by a signal for the length."""
+        warm = 0.0 if self.temperature is None else self.temperature
+        expansion = self.uniform_pieces[0].material.thermal_expansion or 0.0
+        if isinstance(warm, Signal) and expansion != 0.0:
+            return Driven(warm, 1.0, expansion)
+        by_heat = 1.0 + expansion * at_start(warm)
+        if isinstance(self.rest_length, Signal):
+            return Driven(self.rest_length, 0.0, by_heat / self.length)
+        return Driven(None, by_heat)
+
+    def growth_at(self, time: ArrayLike) -> np.ndarray:
+        """Return `growth` at times of any shape, in s."""
+        driven = self.growth
+        return driven.base + driven.linear * (np.zeros(np.shape(time)) if driven.signal is None
+                                              else driven.signal.value(time))
+
+    def driven(self) -> dict[str, Driven]:
+        """Return the quantities that signals prescribe, by name: its growth unless that is constantly 1."""
+        driven = self.growth
+        return {} if driven.signal is None and driven.base == 1.0 else {GROWTH: driven}
 
     @property
     def is_curved(self) -> bool:

@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import model_validator
 
 from .part import Part
-from .validation import bounded, not_negative, positive
+from .validation import bounded, finite, not_negative, positive
 
 INCOMPRESSIBLE = 0.5
 """The largest Poisson ratio: no change of volume."""
@@ -27,6 +27,7 @@ class Material(Part):
     shear_modulus: Pa
     damping_time: retardation time τ of stress = elasticity (strain + τ strain rate), s
     mass_damping: α of the force -α density velocity on each volume, as of a surrounding fluid, 1/s
+    thermal_expansion: strain free of stress by a rise of temperature, as of the ``temperature`` of a cable, 1/K
     """
 
     youngs_modulus: Annotated[float, positive("Pa")]
@@ -35,6 +36,7 @@ class Material(Part):
     shear_modulus: Annotated[float, positive("Pa")] | None = None
     damping_time: Annotated[float, not_negative("s")] = 0.0
     mass_damping: Annotated[float, not_negative("1/s")] = 0.0
+    thermal_expansion: Annotated[float, finite("1/K")] | None = None
 
     @model_validator(mode="after")
     def _shear_is_settled(self) -> "Material":

@@ -1,29 +1,14 @@
 """Forces between two points, such as springs."""
 
-from dataclasses import dataclass
 from typing import ClassVar, Self
 
 from pydantic import model_validator
 
 from .attachment import AnyAttachment
+from .driven import Driven
 from .part import Part
 from .quantity import Quantity, of_engine, of_time
-from .signal import Signal, at_start
 from .validation import Name
-
-
-@dataclass(frozen=True)
-class Driven:
-    """A quantity of a law that a signal f prescribes: base + linear f."""
-
-    signal: Signal
-    base: float
-    linear: float
-
-    @property
-    def start(self) -> float:
-        """Return its value at t = 0."""
-        return self.base + self.linear * at_start(self.signal)
 
 
 class PointForce(Part):

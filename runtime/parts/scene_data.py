@@ -28,9 +28,11 @@ from .plane_axes import PlaneAxes
 from .point_force import PointForce
 from .rigid_body import RigidBody
 from .rope import Rope
+from .signal import Signal
 from .slide import Slide
 from .support import Clamp, Motion, Pin, Support, Tie
 from .surface import Surface
+from .thermal import as_temperature
 from .validation import vector
 
 if TYPE_CHECKING:
@@ -94,10 +96,11 @@ class PartsInOrder(list[Any]):
 class SceneData:
     """The data of a scene for checks, model, solvers and results; `funicular.Scene` adds methods.
 
-    ``gravity`` in m/s². Each kind of part has a group for reading, ``group`` of its class: a dict by name, or a list
-    where parts have no names. Kinds that share a group also have their own: ``springs``, ``rigid_bodies``, ``forces``.
-    ``messages`` lists adjustments; ``run_settings``, ``equilibrium_settings`` and ``relax_settings`` are the settings
-    of its file; ``title`` is the title of pictures, the name of its file without the ending.
+    ``gravity`` in m/s², ``temperature`` of cables in K, or None. Each kind of part has a group for reading, ``group``
+    of its class: a dict by name, or a list where parts have no names. Kinds that share a group also have their own:
+    ``springs``, ``rigid_bodies``, ``forces``. ``messages`` lists adjustments; ``run_settings``,
+    ``equilibrium_settings`` and ``relax_settings`` are the settings of its file; ``title`` is the title of pictures,
+    the name of its file without the ending.
     """
 
     cables: dict[str, Cable]
@@ -122,12 +125,18 @@ class SceneData:
     drawn: SceneData | None = None
     """The original of a scene that `in_plane` made."""
 
-    def __init__(self, gravity: Any = (0, -9.81, 0)):
-        """Make an empty scene; gravity: 3 numbers in m/s². Raises SceneError."""
+    def __init__(self, gravity: Any = (0, -9.81, 0), temperature: Any = None):
+        """Make an empty scene; gravity: 3 numbers in m/s²; temperature: of cables without their own, above that of the
+        stress-free state, a number or a signal, K. Raises SceneError.
+        """
         try:
             self.gravity = vector(gravity, "m/s²")
         except ValueError as error:
             raise SceneError("scene", f"gravity {error}") from None
+        try:
+            self.temperature: float | Signal | None = None if temperature is None else as_temperature(temperature)
+        except ValueError as error:
+            raise SceneError("scene", f"temperature {error.args[0]}", *error.args[1:]) from None
         held = vars(self)
         for group, holder in _holders().items():
             held[group] = holder()
@@ -273,7 +282,7 @@ class SceneData:
         if begun is not None:
             scene = begun.copied()
         else:
-            scene = type(self)(gravity=self.gravity if gravity is None else gravity)
+            scene = type(self)(gravity=self.gravity if gravity is None else gravity, temperature=self.temperature)
             scene.title = self.title
             scene.run_settings, scene.equilibrium_settings = dict(self.run_settings), dict(self.equilibrium_settings)
             scene.relax_settings = dict(self.relax_settings)

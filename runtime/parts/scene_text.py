@@ -30,7 +30,9 @@ Directory = str | os.PathLike[str]
 BARE = re.compile(r"[A-Za-z0-9_-]+")
 """A key without quotes."""
 SETTINGS = {"run": RunSettings, "equilibrium": EquilibriumSettings, "relax": RelaxationSettings}
-TABLES = ("gravity", *PARTS, *SETTINGS)
+OF_ALL = ("gravity", "temperature")
+"""Entries of a scene as a whole."""
+TABLES = (*OF_ALL, *PARTS, *SETTINGS)
 
 DOTTED = re.compile(r"""\.[ \t]*+(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+(?=\.)""")
 """A part in the middle of a key with dots."""
@@ -48,8 +50,8 @@ def read(text: str, origin: str, new: Callable[..., S], directory: Directory = "
          libraries: Iterable[Directory] = ()) -> S:
     """Return a scene from the text of a scene file; origin: its name in messages.
 
-    new: makes an empty scene from the keyword gravity; directory: of relative paths in the text, by default the working
-    directory; libraries: directories of elements that the text may load. Raises SceneError.
+    new: makes an empty scene from the keywords `OF_ALL`; directory: of relative paths in the text, by default the
+    working directory; libraries: directories of elements that the text may load. Raises SceneError.
     """
     _check_depth(text, origin)
     try:
@@ -66,9 +68,9 @@ def read(text: str, origin: str, new: Callable[..., S], directory: Directory = "
         raise error.inside(origin) from None
     reader = _Reader(text, tables, directory)
     try:
-        scene = new(**{name: tables[name] for name in ("gravity",) if name in tables})
+        scene = new(**{name: tables[name] for name in OF_ALL if name in tables})
     except SceneError as error:
-        reader.note(error, "gravity")
+        reader.note(error, next((name for name in OF_ALL if error.cause.startswith(name)), OF_ALL[0]))
         scene = new()
     reader.read_all(scene)
     if reader.found:
@@ -241,7 +243,8 @@ def _settings(name: str, table: Any, directory: Directory) -> dict[str, Any]:
 
 def dumps(scene: SceneData) -> str:
     """Return the text of a scene file that `read` turns into the same scene."""
-    lines, parts = [f"gravity = {as_toml(scene.gravity)}"], list(scene.parts())
+    whole = {name: plain_data(value) for name in OF_ALL if (value := getattr(scene, name)) is not None}
+    lines, parts = _lines(whole), list(scene.parts())
     for kind in PARTS:
         for part in parts:
             if part.kind == kind and isinstance(part, Event) and part.function is not None:

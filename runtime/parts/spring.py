@@ -5,8 +5,9 @@ from typing import Annotated, Self
 
 from pydantic import model_validator
 
+from .driven import Driven
 from .force_segments import HAS_NO_FORCE, PULLS_ALONE, ForceTable, Segment, pulling, tabulated, with_play
-from .point_force import Driven, PointForce
+from .point_force import PointForce
 from .signal import Signal, at_start, extremes, varying
 from .validation import Flag, not_negative
 

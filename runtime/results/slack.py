@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..engine import SLACK_STRAIN
 from ..model.middle_strain import middle_strain
 from ..parts.cable import Cable
@@ -24,7 +26,9 @@ def slack_elements(state: Recorded | RestState, cable: Cable | str) -> xarray.Da
         raise no_cable(state.scene, name)
     of = next(each for each in state.model.cables if each.name == name)
     vectors = state[f"{name}.nodal_vectors"]
-    slack = middle_strain(of, vectors if over_time else vectors[None]) < -SLACK_STRAIN
+    growth = state.scene.cables[name].growth_at(np.zeros(1) if isinstance(state, RestState) else state.time)
+    vectors = (vectors if over_time else vectors[None]) / growth[:, None, None, None]
+    slack = middle_strain(of, vectors) < -SLACK_STRAIN
     s = of.mesh.boundaries
     middle = {"units": "m", "long_name": "middle of the element"}
     coords: dict[str, Any] = {"s": ("element", (s[:-1] + s[1:]) / 2, middle)}

@@ -56,11 +56,11 @@ MAX_NAMED = 12
 class Scene(Viewable, DescribedScene):
     """Cables, bodies, their couplings, supports and loads.
 
-    ``gravity`` in m/s²; ``cables``, ``bodies``, ``ropes``, ``joints``, ``slides``, ``ties``, ``loads``,
-    ``point_forces``, ``events`` are dicts by name; ``pins``, ``clamps`` and ``motions`` are lists, all read-only:
-    methods add parts, `replace` and `without` make other scenes. ``messages`` lists adjustments; ``run_settings``,
-    ``equilibrium_settings`` and ``relax_settings`` hold the settings of the scene's file; ``title``, of pictures, is by
-    default the name of this file without the ending.
+    ``gravity`` in m/s²; ``temperature`` of cables, K; ``cables``, ``bodies``, ``ropes``, ``joints``, ``slides``,
+    ``ties``, ``loads``, ``point_forces``, ``events`` are dicts by name; ``pins``, ``clamps`` and ``motions`` are lists,
+    all read-only: methods add parts, `replace` and `without` make other scenes. ``messages`` lists adjustments;
+    ``run_settings``, ``equilibrium_settings`` and ``relax_settings`` hold the settings of the scene's file; ``title``,
+    of pictures, is by default the name of this file without the ending.
     """
 
     def _check_for(self, settings: RunSettings) -> None:
@@ -380,6 +380,9 @@ class Scene(Viewable, DescribedScene):
     def overview(self) -> list[tuple[str, str]]:
         """Return the contents of the scene for a notebook; see `Viewable.overview`."""
         found = [("gravity", show(self.gravity, "m/s²"))]
+        if self.temperature is not None:
+            warm = self.temperature
+            found.append(("temperature", f"{warm:g} K" if isinstance(warm, float) else warm.form))
         for kind, names in self._names().items():
             more = f" and {len(names) - MAX_NAMED} more" if len(names) > MAX_NAMED else ""
             found.append((kind, ", ".join(names[:MAX_NAMED]) + more))

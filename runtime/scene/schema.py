@@ -8,6 +8,7 @@ from ..parts.kinds import PARTS
 from ..parts.part import FAMILIES, Part
 from ..parts.scene_text import SETTINGS
 from ..parts.schemas import TABLE_OF
+from ..parts.signal import SIGNALS
 
 DIALECT = "http://json-schema.org/draft-07/schema#"
 """The newest dialect that TOML editors support."""
@@ -20,6 +21,7 @@ def scene_schema() -> dict[str, Any]:
         definitions[name] = {"oneOf": [_table(part, definitions) for part in family.kinds]}
     tables: dict[str, Any] = {"gravity": {
         "type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3, "description": "in m/s²"}}
+    tables["temperature"] = {"anyOf": [{"type": "number", "description": "in K"}, _linked(SIGNALS.schema)]}
     for name, part in PARTS.items():
         tables[name] = {"type": "array", "items": _table(part, definitions)}
     for name, settings in SETTINGS.items():

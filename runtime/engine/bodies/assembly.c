@@ -1,5 +1,6 @@
 /* Sums over elements, and over bodies through bodies.c: forces, energies, and the band of a Newton matrix. */
 #include "base/simd.h"
+#include "bodies/growth.h"
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 
@@ -36,13 +37,28 @@ static int chunk(const fu_cable *cable, int k, int size)
     return (end < next ? end : next) - k;
 }
 
-/* Computes the contributions of n elements of a cable, from the first on, one after the other. */
-typedef void (*work_on)(const fu_cable *cable, int first, int n, const fu_elements *of, double *out);
+/* A sum of forces that threads share: of a cable's elements, to f; one or two forces of each group of elements. */
+typedef struct sum sum;
 
-static void elastic_forces(const fu_cable *cable, int first, int n, const fu_elements *of, double *f)
+/* Computes the contributions of n elements of a cable, from the first on, one after the other. */
+typedef void (*work_on)(const sum *job, int first, int n, const fu_elements *of, double *out);
+
+struct sum {
+    const fu_model *model;
+    const fu_cable *cable;
+    const double *q, *v;
+    work_on forces[2];
+    double *f;
+};
+
+static void elastic_forces(const sum *job, int first, int n, const fu_elements *of, double *f)
 {
-    (void)first;
+    const fu_cable *cable = job->cable;
     const fu_block block = cable->blocks ? cable->blocks->elastic_force : 0;
+    if (cable->growth >= 0) {
+        for (int k = 0; k < n; ++k) fu_grown_elastic_force(cable, first + k, job->q, f + k * cable->coordinates);
+        return;
+    }
     int k = in_blocks(block, n);
     if (k) block(k, of, f);
     for (; k < n; ++k)
@@ -50,10 +66,15 @@ static void elastic_forces(const fu_cable *cable, int first, int n, const fu_ele
                                   f + k * cable->coordinates);
 }
 
-static void damping_forces(const fu_cable *cable, int first, int n, const fu_elements *of, double *f)
+static void damping_forces(const sum *job, int first, int n, const fu_elements *of, double *f)
 {
-    (void)first;
+    const fu_cable *cable = job->cable;
     const fu_block block = cable->blocks ? cable->blocks->damping_force : 0;
+    if (cable->growth >= 0) {
+        for (int k = 0; k < n; ++k)
+            fu_grown_damping_force(cable, first + k, job->q, job->v, f + k * cable->coordinates);
+        return;
+    }
     int k = in_blocks(block, n);
     if (k) block(k, of, f);
     for (; k < n; ++k)
@@ -62,38 +83,35 @@ static void damping_forces(const fu_cable *cable, int first, int n, const fu_ele
 }
 
 /* Computes M v. */
-static void inertia_forces(const fu_cable *cable, int first, int n, const fu_elements *of, double *f)
+static void inertia_forces(const sum *job, int first, int n, const fu_elements *of, double *f)
 {
+    const fu_cable *cable = job->cable;
     for (int k = 0; k < n; ++k)
         cable->kernel->inertia_force(fu_element_mass(cable, first + k), of->v + k * of->per_node,
                                      f + k * cable->coordinates);
 }
 
-static void mass_damping_forces(const fu_cable *cable, int first, int n, const fu_elements *of, double *f)
+static void mass_damping_forces(const sum *job, int first, int n, const fu_elements *of, double *f)
 {
-    const double mass_damping = fu_piece_of(cable, first)->mass_damping;
-    inertia_forces(cable, first, n, of, f);
-    for (int i = 0; i < n * cable->coordinates; ++i) f[i] *= mass_damping;
+    const double mass_damping = fu_piece_of(job->cable, first)->mass_damping;
+    inertia_forces(job, first, n, of, f);
+    for (int i = 0; i < n * job->cable->coordinates; ++i) f[i] *= mass_damping;
 }
 
-static void elastic_tangents(const fu_cable *cable, int n, const fu_elements *of, double *K)
+static void elastic_tangents(const fu_cable *cable, const double *q, int first, int n, const fu_elements *of, double *K)
 {
+    const int size = cable->coordinates * cable->coordinates;
+    if (cable->growth >= 0) {
+        for (int k = 0; k < n; ++k) fu_grown_elastic_tangent(cable, first + k, q, K + k * size);
+        return;
+    }
     const fu_block block = cable->blocks ? cable->blocks->elastic_tangent : 0;
     int k = in_blocks(block, n);
     if (k) block(k, of, K);
     for (; k < n; ++k)
         cable->law->elastic_tangent(of->l[k * of->l_stride], of->e + k * of->per_node, of->A + (long)k * of->A_stride,
-                                    K + k * cable->coordinates * cable->coordinates);
+                                    K + k * size);
 }
-
-/* A sum of forces that threads share: of a cable's elements, to f; one or two forces of each group of elements. */
-typedef struct {
-    const fu_model *model;
-    const fu_cable *cable;
-    const double *q, *v;
-    work_on forces[2];
-    double *f;
-} sum;
 
 /* Adds the contributions of n elements of a part from the k-th on. */
 static void add_group(const sum *job, int k, int n, const double *from, double *first)
@@ -127,7 +145,7 @@ static void add_part(const void *what, int part, int parts)
         n = chunk(job->cable, k, CHUNK);
         const fu_elements of = elements_from(job->cable, job->q, job->v, k);
         for (int which = 0; which < 2 && job->forces[which]; ++which) {
-            job->forces[which](job->cable, k, n, &of, out);
+            job->forces[which](job, k, n, &of, out);
             add_group(job, k, n, out, part && k == range.first ? on_first_node(job, part, which) : 0);
         }
     }
@@ -174,6 +192,7 @@ void fu_internal_forces(const fu_model *model, const double *q, const double *v,
         const sum elastic = {model, &model->cables[c], q, v, {elastic_forces}, f};
         add_sum(&elastic);
     }
+    fu_add_growth_forces(model, q, f);
     fu_rate_forces(model, q, v, f);
 }
 
@@ -183,11 +202,14 @@ void fu_discrete_forces(const fu_model *model, const double *q, const double *q_
     double part[FU_MAX_COORDINATES];
     FU_EACH_CABLE(cable, model) {
         FU_EACH_ELEMENT(k, at, cable) {
-            cable->law->discrete_force(fu_element_length(cable, k), q + at, q_next + at, fu_element_constants(cable, k),
-                                       part);
+            if (cable->growth >= 0) fu_grown_discrete_force(cable, k, q, q_next, part);
+            else
+                cable->law->discrete_force(fu_element_length(cable, k), q + at, q_next + at,
+                                           fu_element_constants(cable, k), part);
             for (int i = 0; i < cable->coordinates; ++i) f[at + i] += part[i];
         }
     }
+    fu_add_discrete_growth_forces(model, q, q_next, f);
 }
 
 /* Adds damping and bodies' forces. */
@@ -199,6 +221,7 @@ void fu_rate_forces(const fu_model *model, const double *q, const double *v, dou
         const sum rates = {model, cable, q, v, {first, first == by_mass ? 0 : by_mass}, f};
         if (first) add_sum(&rates);
     }
+    fu_add_growth_rate_forces(model, q, v, f);
     fu_bodies_forces(model, q, v, f);
 }
 
@@ -306,7 +329,8 @@ static void complete(const matrix *job, int k, double *K)
         for (int i = 0; i < size; ++i) K[i] = 0.0;
     else {
         if (of.tau > 0.0) {
-            cable->law->damping_tangent(of.l[0], of.e, of.v, of.A, of.tau, job->rate, Q);
+            if (cable->growth >= 0) fu_grown_damping_tangent(cable, k, job->q, job->v, job->rate, Q);
+            else cable->law->damping_tangent(of.l[0], of.e, of.v, of.A, of.tau, job->rate, Q);
             for (int i = 0; i < size; ++i) K[i] += Q[i];
         }
         for (int i = 0; i < size; ++i) K[i] *= job->stiffness;
@@ -329,7 +353,8 @@ static void add_matrix_part(const void *what, int part, int parts)
         if (k == end) {
             const fu_elements of = elements_from(cable, job->q, job->v, k);
             end += chunk(cable, k, FU_BLOCK_ELEMENTS);
-            if (job->stiffness != 0.0) elastic_tangents(cable, end - k, &of, every + (FU_BLOCK_ELEMENTS - (end - k)) * size);
+            if (job->stiffness != 0.0)
+                elastic_tangents(cable, job->q, k, end - k, &of, every + (FU_BLOCK_ELEMENTS - (end - k)) * size);
         }
         double *K = every + (FU_BLOCK_ELEMENTS - (end - k)) * size;
         complete(job, k, K);
@@ -370,9 +395,11 @@ static void element_at_rest(const fu_cable *cable, int k, const double *q, const
 {
     const fu_elements of = elements_from(cable, q, zero, k);
     for (int i = 0; i < cable->coordinates * cable->coordinates; ++i) K[i] = 0.0;
-    if (which == FU_STIFFNESS_AT_REST) cable->law->elastic_tangent(of.l[0], of.e, of.A, K);
-    if (which == FU_DAMPING_AT_REST && of.tau > 0.0)
-        cable->law->damping_tangent(of.l[0], of.e, of.v, of.A, of.tau, 1.0, K);
+    if (which == FU_STIFFNESS_AT_REST) elastic_tangents(cable, q, k, 1, &of, K);
+    if (which == FU_DAMPING_AT_REST && of.tau > 0.0) {
+        if (cable->growth >= 0) fu_grown_damping_tangent(cable, k, q, zero, 1.0, K);
+        else cable->law->damping_tangent(of.l[0], of.e, of.v, of.A, of.tau, 1.0, K);
+    }
     if (which != FU_STIFFNESS_AT_REST)
         add_mass(cable, k, which == FU_MASS_AT_REST ? 1.0 : fu_piece_of(cable, k)->mass_damping, K);
 }
@@ -409,7 +436,8 @@ double fu_constant_elastic_energy(const fu_model *model, const double *q)
     double total = 0.0, part;
     FU_EACH_CABLE(cable, model) {
         FU_EACH_ELEMENT(k, at, cable) {
-            cable->law->energy(fu_element_length(cable, k), q + at, fu_element_constants(cable, k), &part);
+            if (cable->growth >= 0) part = fu_grown_energy(cable, k, q);
+            else cable->law->energy(fu_element_length(cable, k), q + at, fu_element_constants(cable, k), &part);
             total += part;
         }
     }
@@ -427,8 +455,13 @@ double fu_potential_energy(const fu_model *model, const double *q)
 }
 
 /* Computes the dissipated power of n elements of a cable, one number each. */
-static void dissipations(const fu_cable *cable, int n, const fu_elements *of, double *power)
+static void dissipations(const fu_cable *cable, const double *q, const double *v, int first, int n,
+                         const fu_elements *of, double *power)
 {
+    if (cable->growth >= 0) {
+        for (int k = 0; k < n; ++k) power[k] = fu_grown_dissipation(cable, first + k, q, v);
+        return;
+    }
     const fu_block block = cable->blocks ? cable->blocks->dissipation : 0;
     int k = in_blocks(block, n);
     if (k) block(k, of, power);
@@ -449,7 +482,7 @@ double fu_internal_dissipation(const fu_model *model, const double *q, const dou
             if (cable->tau > 0.0 && k == end) {
                 const fu_elements of = elements_from(cable, q, v, k);
                 end += chunk(cable, k, CHUNK);
-                dissipations(cable, end - k, &of, power + CHUNK - (end - k));
+                dissipations(cable, q, v, k, end - k, &of, power + CHUNK - (end - k));
             }
             if (cable->tau > 0.0) total += power[CHUNK - (end - k)];
             if (mass_damping > 0.0) {

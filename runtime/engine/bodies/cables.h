@@ -33,6 +33,12 @@ typedef struct {
     /* of each vector of a node: largest displacement of points of its elements by a unit of it; null if unknown */
     const double *share;
     int tension_only;      /* nonzero for a law with reduced stiffness in compression */
+    /* dof of the growth factor of the stress-free length, -1 for none (bodies/growth.c); orders of the derivatives by
+     * the arc-length of the vectors of a node; constants of the law as A, with negative bending stiffness, null where no
+     * signal prescribes the growth */
+    int growth;
+    const int *orders;
+    const double *growth_constants;
     int dissipation_state; /* first number in a state's of algorithmic dissipation: law->rates + 1 an element */
 } fu_cable;
 

@@ -62,6 +62,9 @@ cdef extern from * nogil:
         const fu_law_kernels *law
         const fu_law_blocks *blocks
         int n_elements, n_nodes, first, coordinates, per_node, l_stride, m_stride, A_stride, dissipation_state, tension_only
+        int growth
+        const int *orders
+        const double *growth_constants
         const double *share
         const fu_cable_piece *pieces
         double length, tau, mass_damping

@@ -1,6 +1,7 @@
 /* Tension-only cables: the first of a cable's elements becomes slack, and all are taut again, by the axial strain in
  * the middle of each. The law is smooth: steps do not end there, and the instant is interpolated linearly between the
  * least strains at both ends of a step. */
+#include "bodies/growth.h"
 #include "equations/run.h"
 #include "events/slack_cables.h"
 
@@ -15,7 +16,7 @@ static double strain(const fu_cable *cable, const double *q, int element)
     cable->kernel->on_axis(l, 0.5 * l, N, N_x);
     for (int k = 0; k < n; ++k)
         for (int d = 0; d < dim; ++d) slope[d] += N_x[k] * e[k * dim + d];
-    return sqrt(fu_dot(dim, slope, slope)) - 1.0;
+    return sqrt(fu_dot(dim, slope, slope)) / (cable->growth < 0 ? 1.0 : fu_growth(cable, element, q)) - 1.0;
 }
 
 /* Returns the least strain of a cable's elements, and its element. */

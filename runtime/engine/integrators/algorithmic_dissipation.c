@@ -24,6 +24,7 @@
  * without a moment.
  *
  * g of a bent cable has directions in space, which do not rotate with the cable: that changes S by the order of h^2. */
+#include "bodies/growth.h"
 #include "equations/run.h"
 #include "integrators/algorithmic_dissipation.h"
 
@@ -34,11 +35,11 @@
 
 static const double none[FU_MAX_RATES];
 
-/* A moving cable, and the rotation that is subtracted from its motion. */
+/* A moving cable, the rotation that is subtracted from its motion, and the rate of its growth factor. */
 typedef struct {
     const fu_cable *cable;
     const double *q, *v;
-    double weight, omega[3];
+    double weight, omega[3], growing;
 } moving;
 
 const fu_algorithmic *fu_algorithmic_of(const fu_run *run)
@@ -91,17 +92,36 @@ static void turn(const moving *m, int k, const double omega[3], double *turned)
     }
 }
 
-/* Computes f of D (weight dE - relaxed), and dE; returns their work. */
-static double element_force(const moving *m, int k, const double *relaxed, double *f, double *dE)
+/* Computes f of D (weight dE - relaxed), and dE, by the rates v of an element and that of its growth factor, to whose
+ * dof it adds the force; returns their work. */
+static double law_force(const moving *m, int k, const double *v, double growing, const double *relaxed, double *f,
+                        double *dE, double *on_growth)
+{
+    const fu_cable *cable = m->cable;
+    const double *e = m->q + entry_of(cable, k), *A = fu_element_constants(cable, k);
+    if (cable->growth < 0) {
+        cable->law->algorithmic_force(fu_element_length(cable, k), e, v, A, m->weight, relaxed, f, dE);
+        return fu_dot(cable->coordinates, f, v);
+    }
+    fu_grown grown;
+    fu_grow(cable, k, fu_growth(cable, k, m->q), e, &grown);
+    fu_grow_rates(cable, growing, v, &grown);
+    cable->law->algorithmic_force(grown.l, grown.e, grown.v, A, m->weight, relaxed, f, dE);
+    const double work = fu_dot(cable->coordinates, f, grown.v);
+    if (on_growth) *on_growth += fu_growth_force(cable, &grown, f);
+    fu_forces_on_given(cable, grown.g, f);
+    return work;
+}
+
+/* The same of the motion without its rotation. */
+static double element_force(const moving *m, int k, const double *relaxed, double *f, double *dE, double *on_growth)
 {
     const fu_cable *cable = m->cable;
     const double back[3] = {-m->omega[0], -m->omega[1], -m->omega[2]};
     double v[FU_MAX_COORDINATES];
     memcpy(v, m->v + entry_of(cable, k), sizeof(double) * (size_t)cable->coordinates);
     if (cable->law->spins) turn(m, k, back, v);
-    cable->law->algorithmic_force(fu_element_length(cable, k), m->q + entry_of(cable, k), v,
-                                  fu_element_constants(cable, k), m->weight, relaxed, f, dE);
-    return fu_dot(cable->coordinates, f, v);
+    return law_force(m, k, v, m->growing, relaxed, f, dE, on_growth);
 }
 
 /* Solves N x = b, with N symmetric and positive semidefinite; x is zero for N zero. */
@@ -157,21 +177,20 @@ static void of_none(const fu_run *run, const fu_cable *cable, int k, double *rel
 static moving without_turn(const fu_run *run, const fu_cable *cable, const double *q, const double *v, double weight,
                            stress_of stress)
 {
-    moving m = {cable, q, v, weight, {0.0, 0.0, 0.0}};
+    moving m = {cable, q, v, weight, {0.0, 0.0, 0.0}, cable->growth < 0 ? 0.0 : v[cable->growth]};
     double N[9] = {0.0}, M[3] = {0.0};
     if (!cable->law->spins) return m;
     for (int k = 0; k < cable->n_elements; ++k) {
         double f[FU_MAX_COORDINATES], turns[3][FU_MAX_COORDINATES] = {{0.0}}, relaxed[FU_MAX_RATES], dE[FU_MAX_RATES];
         stress(run, cable, k, relaxed);
-        element_force(&m, k, relaxed, f, dE);
+        element_force(&m, k, relaxed, f, dE, 0);
         for (int d = 0; d < 3; ++d) {
             const double axis[3] = {d == 0, d == 1, d == 2};
             turn(&m, k, axis, turns[d]);
             M[d] += fu_dot(cable->coordinates, f, turns[d]);
         }
         for (int d = 0; d < 3; ++d) {
-            cable->law->algorithmic_force(fu_element_length(cable, k), q + entry_of(cable, k), turns[d],
-                                          fu_element_constants(cable, k), weight, none, f, dE);
+            law_force(&m, k, turns[d], 0.0, none, f, dE, 0);
             for (int i = 0; i < 3; ++i) N[3 * d + i] += fu_dot(cable->coordinates, f, turns[i]);
         }
     }
@@ -190,7 +209,7 @@ void fu_algorithmic_start(fu_run *run, double h)
         for (int k = 0; k < cable->n_elements; ++k) {
             double f[FU_MAX_COORDINATES], *r = state_of(cable, expected_of(run), k);
             const double left = state_of(cable, run->now.dissipation_state, k)[n];
-            const double energy = 0.5 * a->inertia * h * h * element_force(&m, k, none, f, r);
+            const double energy = 0.5 * a->inertia * h * h * element_force(&m, k, none, f, r, 0);
             const double part = energy > left ? sqrt(left / energy) : 1.0;
             for (int i = 0; i < n; ++i) r[i] *= h * part;
             r[n] = part * part * energy;
@@ -208,7 +227,7 @@ void fu_algorithmic_forces(fu_run *run, const double *q, double *force)
         for (int k = 0; k < cable->n_elements; ++k) {
             double f[FU_MAX_COORDINATES], relaxed[FU_MAX_RATES], dE[FU_MAX_RATES];
             of_both(run, cable, k, relaxed);
-            element_force(&m, k, relaxed, f, dE);
+            element_force(&m, k, relaxed, f, dE, cable->growth < 0 ? 0 : force + cable->growth);
             for (int i = 0; i < cable->coordinates; ++i) force[entry_of(cable, k) + i] += f[i];
         }
     }
@@ -228,13 +247,13 @@ double fu_algorithmic_account(fu_run *run, const double *q)
         for (int k = 0; k < cable->n_elements; ++k) {
             const double *psi = run->psi + entry_of(cable, k), *now = state_of(cable, run->now.dissipation_state, k);
             double *next = state_of(cable, run->next.dissipation_state, k);
-            double f[FU_MAX_COORDINATES], relaxed[FU_MAX_RATES], dE[FU_MAX_RATES];
+            double f[FU_MAX_COORDINATES], relaxed[FU_MAX_RATES], dE[FU_MAX_RATES], on_growth = 0.0;
             of_both(run, cable, k, relaxed);
-            element_force(&m, k, relaxed, f, dE);
-            work += fu_dot(cable->coordinates, f, psi);
+            element_force(&m, k, relaxed, f, dE, &on_growth);
+            work += fu_dot(cable->coordinates, f, psi) + on_growth * m.growing;
             for (int i = 0; i < n; ++i) next[i] = now[i] + 2.0 * (a->lag * dE[i] - now[i]) / (2.0 * a->lag + 1.0);
             of_inertia(run, cable, k, relaxed);
-            const double gained = element_force(&second, k, relaxed, f, dE);
+            const double gained = element_force(&second, k, relaxed, f, dE, 0);
             next[n] = fmax(0.0, state_of(cable, expected_of(run), k)[n] + gained);
         }
     }

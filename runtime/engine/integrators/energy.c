@@ -14,6 +14,7 @@
  * rotations and tension. */
 #include "base/clock.h"
 #include "base/workspace.h"
+#include "bodies/growth.h"
 #include "bodies/rotation.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/couplings.h"
@@ -126,8 +127,10 @@ static void mean_stress(fu_run *run, double stiffness)
     FU_EACH_CABLE(cable, model) {
         const int dim = cable->kernel->dim, n = cable->coordinates / dim;
         FU_EACH_ELEMENT(e, at, cable) {
-            cable->law->step_stiffness(fu_element_length(cable, e), run->now.q + at, run->next.q + at,
-                                       fu_element_constants(cable, e), k);
+            if (cable->growth >= 0) fu_grown_step_stiffness(cable, e, run->now.q, run->next.q, k);
+            else
+                cable->law->step_stiffness(fu_element_length(cable, e), run->now.q + at, run->next.q + at,
+                                           fu_element_constants(cable, e), k);
             for (int i = 0; i < n; ++i)
                 for (int j = 0; j < n; ++j)
                     for (int d = 0; d < dim; ++d)

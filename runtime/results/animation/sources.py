@@ -54,13 +54,15 @@ def _frames(scene: SceneData, time: np.ndarray, found: Mapping[str, np.ndarray],
     return Frames(scene, time, found.__getitem__, found.__contains__, drawn(scene).__getitem__, load, forces)
 
 
-def _law(scene: SceneData, value: Callable[[str], np.ndarray],
+def _law(scene: SceneData, time: np.ndarray, value: Callable[[str], np.ndarray],
          start: Callable[[str], np.ndarray] | None = None) -> SectionForces:
-    """Return the section forces by the elastic law; value, start: nodal vectors by name, see `Instants`."""
+    """Return the section forces by the elastic law at times (T,); value, start: nodal vectors by name, see `Instants`.
+    """
     def forces(cable: str, s: np.ndarray) -> dict[str, np.ndarray]:
         part = scene.cables[cable]
         name = f"{cable}.nodal_vectors"
-        force, moment, axes, strain = constitutive(part, value(name), Cuts(arrays_of(part).model(0), s[None], True),
+        cuts = Cuts(arrays_of(part).model(0), s[None], True)
+        force, moment, axes, strain = constitutive(part, value(name), cuts, time,
                                                    None if start is None else start(name))
         return {"force": force, "moment": moment} | components(part, force, moment, axes, strain)
 
@@ -70,7 +72,7 @@ def _law(scene: SceneData, value: Callable[[str], np.ndarray],
 def of_scene(scene: SceneData) -> Frames:
     """Return the one frame of a scene as it is drawn, with its loads at the start."""
     found = {name: value[None] for name, value in drawn(scene).items()}
-    return _frames(scene, np.zeros(1), found, np.ones(1), _law(scene, found.__getitem__))
+    return _frames(scene, np.zeros(1), found, np.ones(1), _law(scene, np.zeros(1), found.__getitem__))
 
 
 def of_run(run: Recorded, numbers: np.ndarray) -> Frames:
@@ -81,7 +83,8 @@ def of_run(run: Recorded, numbers: np.ndarray) -> Frames:
 
     def forces(cable: str, s: np.ndarray) -> dict[str, np.ndarray]:
         if not is_balanced(len(numbers), len(s)) or known_method(run.scene, run.model, cable, False) != "balance":
-            return _law(run.scene, value, partial(at_start, run) if of_linear_model(run) else None)(cable, s)
+            start = partial(at_start, run) if of_linear_model(run) else None
+            return _law(run.scene, run.time[numbers], value, start)(cable, s)
         return forces_of_run(run, cable, s[None], numbers)
 
     return Frames(run.scene, run.time[numbers], value, run.__contains__, drawn(run.scene).__getitem__,

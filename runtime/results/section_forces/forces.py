@@ -12,7 +12,8 @@ import numpy as np
 from ...errors import FunicularError, FunicularWarning, UnknownResultError, near
 from ...integrators import INTEGRATORS
 from ...kernels.libraries import kernels_of
-from ...model.model import Model
+from ...model.constants import grown_shape
+from ...model.model import Model, per_grown
 from ...parts.cable import Cable
 from ...parts.event import first_times
 from ...parts.in_plane import in_plane
@@ -51,12 +52,12 @@ GLOBAL = {
 }
 
 
-def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts, start: np.ndarray | None = None
-                 ) -> tuple[np.ndarray, ...]:
+def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts, time: np.ndarray,
+                 start: np.ndarray | None = None) -> tuple[np.ndarray, ...]:
     """Return force and moment (T, n, 3) by the elastic law, section axes (T, n, 3, 3), and strains (T, n, 6) at cuts.
 
-    nodal_vectors: (T, nodes, vectors, 3); start: (1, nodes, vectors, 3) of a run by the linear model about it. Force
-    and moment are along the ground's axes.
+    nodal_vectors: (T, nodes, vectors, 3); time: (T,), s; start: (1, nodes, vectors, 3) of a run by the linear model
+    about it. Force and moment are along the ground's axes.
     """
     kernel = getattr(kernels_of(cable.library), f"{cable.element}_{cable.kernel_law}_section_forces")
     dim, reference, plane = cable.dim, cable.reference, cable.plane
@@ -73,11 +74,17 @@ def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts, start: np.
         start = cable.in_plane(start)[0]
         start = np.concatenate([start[node], start[node + 1]], axis=2).reshape(e.shape)
     e0 = [] if reference is None else [reference[element].reshape(-1, *reference.shape[1:])]
-    lengths = cable.mesh.mean if cable.mesh.is_even else cable.mesh.lengths[element].ravel()
     S = sections[0] if len(sections) == 1 else sections[cable.of_elements(cable.uniform_pieces.index)[element.ravel()]]
+    lengths, places = cable.mesh.mean if cable.mesh.is_even else cable.mesh.lengths[element].ravel(), x.ravel()
+    if cable.driven():
+        g = np.broadcast_to(cable.growth_at(time)[:, None], shape).ravel()
+        lengths, places = g * lengths, g * places
+        e0 = [grown_shape(cable, each, g) for each in e0]
+        factors = per_grown(cable.kind_of_element.nodal_vectors, g)
+        e, start = factors * e, None if start is None else factors * start
     force, moment, axes, strain = (
         values.reshape(*shape, *values.shape[1:])
-        for values in about(lambda e: kernel.rows(x.size, lengths, x.ravel(), e, S, *e0), start, e))
+        for values in about(lambda e: kernel.rows(x.size, lengths, places, e, S, *e0), start, e))
     return (force, moment, axes, strain) if plane is None else (plane.out(force), plane.out(moment), plane.out(axes),
                                                                 strain)
 
@@ -94,7 +101,7 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
     cuts = Cuts(of, s, side == "after")
     nodal = at.value(f"{name}.nodal_vectors")
     start = None if at.start is None else at.start(f"{name}.nodal_vectors")
-    force, moment, axes, strain = constitutive(cable, nodal, cuts, start)
+    force, moment, axes, strain = constitutive(cable, nodal, cuts, at.time, start)
     if method == "constitutive":
         return {"force": force, "moment": moment} | components(cable, force, moment, axes, strain)
     if (refusal := out_of_balance(scene, model, number, at.is_rest)) is not None:
@@ -145,6 +152,8 @@ def _instants(run: Recorded, numbers: np.ndarray) -> Instants:
     for cable in model.cables:
         for into, kind in ((q, "nodal_vectors"), (v, "nodal_velocity")):
             into[:, cable.coordinates] = value(f"{cable.name}.{kind}")[..., : model.dim].reshape(len(numbers), -1)
+    for derivative, into in enumerate((q, v)):
+        into[:, model.driven] = model.driven_in(run.time[chosen], derivative)
     start = partial(at_start, run) if of_linear_model(run) else None
     return Instants(run.time[chosen], q, v, value, start=start, happened=first_times(run.report.get("events", ())))
 

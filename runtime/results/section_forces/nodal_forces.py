@@ -9,7 +9,7 @@ from scipy.sparse import block_array, block_diag, coo_array, csc_array, csr_arra
 from scipy.sparse.linalg import splu
 
 from ...model.joints import JointModel
-from ...model.model import CableModel, Model
+from ...model.model import CableModel, Model, orders_of, per_grown
 from ...model.states import element_coordinates, positions
 from ...model.unknowns import by_unknowns
 from .about_start import about
@@ -59,7 +59,7 @@ def internal(cable: CableModel, at: Instants) -> np.ndarray:
         ends = [vectors[:, cable.mesh.first], vectors[:, cable.mesh.last]]
         start = np.broadcast_to(np.concatenate(ends, axis=2), e.shape)
 
-    def forces(length: float, e: np.ndarray, v: np.ndarray, A: np.ndarray, start: np.ndarray | None,
+    def forces(length: float | np.ndarray, e: np.ndarray, v: np.ndarray, A: np.ndarray, start: np.ndarray | None,
                tau: float) -> np.ndarray:
         found, = about(lambda e: (cable.law_kernel("elastic_force").rows(len(e), length, e, A),), start, e)
         if moving:
@@ -69,13 +69,18 @@ def internal(cable: CableModel, at: Instants) -> np.ndarray:
             found = found + damping.rows(len(e), length, e, v, of_damping, tau)
         return found
 
-    if len(cable.A) == 1:
+    taus = cable.of_elements(lambda piece: piece.tau)
+    if cable.growth >= 0:
+        g, (taken, rates, begun) = cable.growth_in(at.q), _as_taken(cable, at, e, v, start)
+        f = np.stack([forces(g * cable.mesh.length(k), taken[:, k], rates[:, k], cable.A[k % len(cable.A)],
+                             None if begun is None else begun[:, k], taus[k]) for k in range(cable.n_elements)], axis=1)
+        f *= per_grown(cable.vectors, g)[:, None]
+    elif len(cable.A) == 1:
         shape = e.shape
         flat = (-1, *shape[2:])
         f = forces(cable.mesh.mean, e.reshape(flat), v.reshape(flat), cable.A[0],
                    None if start is None else start.reshape(flat), cable.tau).reshape(shape)
     else:  # constants of each element: a curved stress-free shape, or unequal lengths
-        taus = cable.of_elements(lambda piece: piece.tau)
         f = np.stack([forces(cable.mesh.length(k), e[:, k], v[:, k], A, None if start is None else start[:, k], taus[k])
                       for k, A in enumerate(cable.A)], axis=1)
     if cable.mass_damping > 0:
@@ -182,6 +187,22 @@ def _fluid_mass(cable: CableModel, matrices: np.ndarray | None, instant: int) ->
     if matrices is None:
         return csr_array((cable.shape[0] * per_node,) * 2)
     return _assembled(cable, matrices[instant], per_node)
+
+
+def _as_taken(cable: CableModel, at: Instants, e: np.ndarray, v: np.ndarray, start: np.ndarray | None
+              ) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+    """Return vectors e, their rates v, and those at the start, all (T, elements, 2 vectors, dim), of a cable that grows
+    as its law takes them, see engine/bodies/growth.c.
+    """
+    growth = cable.growth_in(at.q)
+    factors = per_grown(cable.vectors, growth)[:, None]
+    taken = factors * e
+    relative = (np.tile(orders_of(cable.vectors), 2)[:, None] > 0) * taken
+    place = cable.vectors.index("r")
+    after = place + len(cable.vectors)
+    relative[:, :, after] = taken[:, :, after] - taken[:, :, place]
+    rates = factors * v - (cable.growth_in(at.v) / growth)[:, None, None, None] * relative
+    return taken, rates, None if start is None else factors * start
 
 
 def _assembled(cable: CableModel, matrices: np.ndarray, per_node: int) -> csr_array:

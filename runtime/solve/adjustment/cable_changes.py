@@ -19,14 +19,12 @@ import numpy as np
 
 from ...model.cables import cable_gravity
 from ...model.constants import constants
-from ...model.model import CableModel
+from ...model.model import CableModel, per_grown
 from ...model.states import element_coordinates
 from ...parts.cable import Cable
 from ...parts.section_stiffness import lengths_in_stiffness
 
 DIRECTORS = "r_y", "r_z"
-DERIVATIVE_ORDERS = {"r_x": 1, "r_xx": 2}
-"""Order of the derivative by the arc-length of nodal vectors."""
 DIFFERENCE_STEP = 1e-6
 """Relative step of a length, to either side, of differences of element forces."""
 
@@ -34,7 +32,7 @@ DIFFERENCE_STEP = 1e-6
 def elastic_force(model: CableModel, A: np.ndarray, q: np.ndarray) -> np.ndarray:
     """Return (coordinates,): dU/dq of a cable with constants A (1 or elements, n) of its elements, at q (n_q,)."""
     kernel = model.law_kernel("elastic_force")
-    return assembled(model, kernel.rows(model.n_elements, *_given(model, A, q)))
+    return assembled(model, _factors(model, q) * kernel.rows(model.n_elements, *_given(model, A, q)))
 
 
 def assembled(model: CableModel, each: np.ndarray) -> np.ndarray:
@@ -94,7 +92,12 @@ def _of_length(model: CableModel, cable: Cable, q: np.ndarray, ratio: float) -> 
 
 def _slopes(model: CableModel) -> np.ndarray:
     """Return (vectors, 1): the order of the derivative by the arc-length of each nodal vector."""
-    return np.array([[float(DERIVATIVE_ORDERS.get(name, 0))] for name in model.vectors])
+    return model.orders[:, None].astype(float)
+
+
+def _factors(model: CableModel, q: np.ndarray) -> np.ndarray:
+    """Return `per_grown` of the elements at q (n_q,)."""
+    return per_grown(model.vectors, model.growth_in(q))
 
 
 def _stiffness_times(model: CableModel, q: np.ndarray, chosen: np.ndarray) -> np.ndarray:
@@ -102,11 +105,11 @@ def _stiffness_times(model: CableModel, q: np.ndarray, chosen: np.ndarray) -> np
     lengths, e, A = _given(model, model.A, q)
     K = model.law_kernel("elastic_tangent").rows(model.n_elements, lengths, e, A)
     along = np.where(np.tile(chosen, 2)[:, None], e, 0.0).reshape(len(e), -1)
-    return assembled(model, np.einsum("eij,ej->ei", K, along).reshape(e.shape))
+    return assembled(model, _factors(model, q) * np.einsum("eij,ej->ei", K, along).reshape(e.shape))
 
 
 def _given(model: CableModel, A: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the arguments of a law's kernels by element: lengths, nodal vectors, constants."""
-    n, e = model.n_elements, element_coordinates(model, q[None])[0]
-    return (np.ascontiguousarray(np.broadcast_to(model.mesh.lengths, n)), np.ascontiguousarray(e),
+    """Return the arguments of a law's kernels by element: lengths, nodal vectors, constants, as the law takes them."""
+    n, e = model.n_elements, _factors(model, q) * element_coordinates(model, q[None])[0]
+    return (np.ascontiguousarray(np.broadcast_to(model.growth_in(q) * model.mesh.lengths, n)), np.ascontiguousarray(e),
             np.ascontiguousarray(np.broadcast_to(A, (n, A.shape[1]))))

@@ -145,6 +145,8 @@ class Changes:
             return None
         if path.entries == ("rest_length",):
             return by_length(self.rest, cable) if lengthens_plainly(self.rest, cable) else None
+        if path.entries == ("material", "thermal_expansion"):
+            return None
         if path.entries[0] not in ("section", "material") or self.rest.names(cable.name, SECTION_DEPENDENT_GROUPS):
             return None
         return self._of_section(cable, path)

@@ -12,7 +12,7 @@ from ...base.interruptions import interruptible
 from ...checks.placement import AXES
 from ...errors import SceneError, near
 from ...model.middle_strain import middle_strain
-from ...model.model import Model
+from ...model.model import CableModel, Model
 from ...model.rope_states import rope_state
 from ...model.rope_wheels import DrumModel
 from ...model.states import body_rates, body_state, spatial
@@ -82,6 +82,10 @@ class State:
                            + ("" if found else ", ".join(self.names())))
         return found[quantity]
 
+    def growth(self, cable: CableModel) -> float:
+        """Return the factor of the stress-free length of a cable."""
+        return float(cable.growth_in(self._q))
+
     def names(self) -> list[str]:
         """Return the bodies, cables, ropes and slides with quantities in the state."""
         model = self._model
@@ -135,7 +139,8 @@ class EventHandler:
         if axis == "least_strain":
             cable = next(cable for cable in self.model.cables if cable.name == name)
             vectors = f"{name}.nodal_vectors"
-            return lambda time, state: middle_strain(cable, np.asarray(state[vectors])[None]).min() - event.value
+            return lambda time, state: middle_strain(cable, np.asarray(state[vectors])[None] / state.growth(cable)
+                                                     ).min() - event.value
         return lambda time, state: np.asarray(state[name])[AXES.index(axis)] - event.value
 
     def acts(self, which: int, what: str, time: float, passed: bool, s: float | None) -> None:

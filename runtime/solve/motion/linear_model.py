@@ -109,6 +109,9 @@ def _split(S: csr_array) -> tuple[np.ndarray, np.ndarray, csr_array]:
 def refuse_what_is_not_linear(scene: SceneData, model: Model) -> None:
     """Raise SceneError for parts of a scene that the linear model does not have."""
     who, remedy = 'integrator "linear"', "take another integrator"
+    for cable in scene.cables.values():
+        if cable.growth.signal is not None:
+            raise SceneError(cable.where, f"{who} does not support a stress-free length that changes", remedy)
     for rope in scene.ropes.values():
         raise SceneError(rope.where, f"{who} does not support ropes that run over sheaves", remedy)
     for slide in scene.slides.values():

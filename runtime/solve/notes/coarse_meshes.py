@@ -20,7 +20,7 @@ import numpy as np
 from ...engine import chord_lengths, moments_along, quadratic_forms, tension_work
 from ...kernels.mesh import Mesh
 from ...model.middle_strain import gauss_rule, strains_at
-from ...model.model import CableModel, Model
+from ...model.model import CableModel, Model, per_grown
 from ...model.states import element_coordinates
 from ...parts.locations import attached
 from ...parts.scene_data import SceneData
@@ -73,7 +73,7 @@ class _Strains:
 
     def of(self, q: np.ndarray) -> np.ndarray:
         """Return (3, T, elements): the mean of the strain over each element, that of its square, and E in J."""
-        strain = self._strain(self.cable.nodal(q))
+        strain = self._strain(self.cable.strained(q))
         if self.part.is_curved:
             strain -= self.drawn
         if self.is_slack_in_compression:
@@ -88,7 +88,12 @@ class _Strains:
         """
         cable, e = self.cable, element_coordinates(self.cable, q)
         energy, h, A = cable.law_kernel("energy"), cable.mesh.lengths, cable.A
-        if len(h) == len(A) == 1:
+        if cable.growth >= 0:
+            g = cable.growth_in(q)
+            e, h = e * per_grown(cable.vectors, g)[:, None], g[:, None] * cable.mesh.all_lengths
+            A = np.broadcast_to(A, (len(self.h), A.shape[1]))
+            whole = np.array([energy.rows(len(self.h), *each, A) for each in zip(h, e, strict=True)])
+        elif len(h) == len(A) == 1:
             whole = energy.rows(e.shape[0] * e.shape[1], h[0], e.reshape(-1, *e.shape[2:]), A[0])
         else:
             h, A = np.broadcast_to(h, len(self.h)), np.broadcast_to(A, (len(self.h), A.shape[1]))

@@ -76,7 +76,7 @@ class CoarseSlides(Note):
         if slide.coordinates is not None:
             return _on_rope(slide.coordinates, q, s)
         cable = self.model.cables[slide.cable]
-        nodal, element = cable.nodal(q), cable.mesh.element_at(s)
+        nodal, element = cable.strained(q), cable.mesh.element_at(s)
         ends = nodal if not cable.mesh.doubled else nodal[:, cable.mesh.nodes_of_boundaries]
         cosine, strain = around_elements(ends, cable.vectors.index("r_x"), middle_strain(cable, nodal), element)
         return _Beside(cosine, strain, cable.mesh.lengths if cable.mesh.is_even else cable.mesh.lengths[element])

@@ -27,7 +27,7 @@ class ReducedStrain(Note):
     def see(self, rows: Rows) -> None:
         """Measure further output rows."""
         for cable in self._cables:
-            nodal = cable.nodal(rows["q"])
+            nodal = cable.strained(rows["q"])
             first, last = nodal[:, cable.mesh.first], nodal[:, cable.mesh.last]
             at_r = cable.vectors.index("r")
             strain = np.linalg.norm(last[:, :, at_r] - first[:, :, at_r], axis=-1) / cable.mesh.lengths - 1

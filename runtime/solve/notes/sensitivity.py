@@ -65,7 +65,7 @@ class _Strut(NamedTuple):
     def rates(self, q: np.ndarray) -> np.ndarray:
         """Return (times, elements): the rates in 1/s at which elements of the cable buckle."""
         cable, length, (_, EI, _, mass) = self.cable, self.part.length, self.of
-        nodal = cable.nodal(q)
+        nodal = cable.strained(q)
         ends = nodal[:, cable.mesh.first], nodal[:, cable.mesh.last]
         strain = stretches(cable, *ends, np.arange(cable.n_elements), SIMPSON_RULE) - 1
         if self.stiffness * -strain.min() <= np.min(EI) * (np.pi / length) ** 2:  # not even in one wave along the cable

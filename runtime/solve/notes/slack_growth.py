@@ -55,7 +55,7 @@ class SlackMotion(Note):
                 found["times"].append(time)
                 found["positions"].append(_positions(self.model, rows["q"][k]).tolist())
         if found["slack"] is None:
-            slack = np.any([(middle_strain(cable, cable.nodal(rows["q"])) < -SLACK_STRAIN).any(axis=1)
+            slack = np.any([(middle_strain(cable, cable.strained(rows["q"])) < -SLACK_STRAIN).any(axis=1)
                             for cable in self.cables], axis=0)
             if slack.any():
                 found["slack"] = float(rows["time"][np.argmax(slack)])
