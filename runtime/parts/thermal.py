@@ -11,4 +11,4 @@ TEMPERATURE = varying(finite("K"))
 
 def as_temperature(value: Any) -> float | Signal:
     """Return a temperature in K, a number or a signal. Raises ValueError."""
-    return TEMPERATURE.func(value)  # type: ignore[call-arg, no-any-return]  # a function of the value alone
+    return TEMPERATURE.func(value)  # type: ignore[call-arg]  # a function of the value alone
