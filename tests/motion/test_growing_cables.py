@@ -15,15 +15,16 @@ METHODS = {"genalpha": {"tol": 1e-6}, "radau": {"tol": 1e-7}, "explicit": {"tol"
            "dissipating": {"step": 2e-4, "integrator": "energy", "spectral_radius": 0.8}}
 
 
-def string(temperature: object, elements: int = 32, **given) -> fu.Scene:
-    """Return the line of CASES section 12: EA 1e6 N, 10 N/m, length and span 100 m, a bending length of 4 mm."""
+def string(temperature: object, elements: int = 32, length: float = 100.0, shape: str | None = None,
+           **given) -> fu.Scene:
+    """Return a line of EA 1e6 N, 10 N/m, a span and by default a length of 100 m; its bending length is 0.1 mm."""
     scene = fu.Scene(gravity=(0, -10, 0))
     scene.cable("line", start=(0, 0, 0), end=(100, 0, 0), elements=elements, element="cable12", strain="engineering",
-                membrane="assumed", temperature=temperature,
+                membrane="assumed", temperature=temperature, rest_length=length, shape=shape,
                 section=fu.GeneralSection(area=1e-3, second_moment_about_y=1e-14, second_moment_about_z=1e-14),
                 material=fu.Material(**{**MATERIAL, "thermal_expansion": 1.2e-5, **given}))
     scene.pin("line", s=0)
-    scene.pin("line", s=100)
+    scene.pin("line", s=length)
     return scene
 
 
@@ -42,6 +43,17 @@ def test_horizontal_force_of_a_line(temperature, force, validated):
     constitutive = rest.section_forces("line", method="constitutive").tension.values
     assert tension.min() == pytest.approx(force, rel=1e-6)  # within an element the slope is not exact
     assert np.abs(tension - constitutive).max() < 1e-5 * force
+
+
+def test_a_warm_line_is_a_longer_line_of_the_same_weight():
+    growth = 1 + 40 * 1.2e-5
+    warm_line = string(40.0, length=101.0, shape="hanging")
+    longer = string(0.0, length=101 * growth, shape="hanging", density=MATERIAL["density"] / growth)
+    rest, same = warm_line.equilibrium(), longer.equilibrium()
+    assert np.abs(rest["line.position"] - same["line.position"]).max() < 1e-10
+    assert pull(rest) == pytest.approx(pull(same), rel=1e-12)
+    frequencies = [scene.modes(4, about=state).frequency for scene, state in ((warm_line, rest), (longer, same))]
+    assert frequencies[0] == pytest.approx(frequencies[1], rel=1e-9)
 
 
 def test_forces_converge_with_elements():
@@ -180,7 +192,6 @@ def test_files_and_resuming_keep_every_bit(tmp_path):
 def test_adjusting_and_derivatives(parameter):
     """A warm line is brought to another pull by one parameter, whose derivative is that of two states beside it."""
     scene = string(40.0)
-    scene = scene.replace("line", rest_length=100.0)
     target = "line@0.force.x"
     begin = scene.equilibrium()[target.rpartition(".")[0]][0]
     rest = scene.equilibrium(adjust={f"line.{parameter}": "free"}, to={target: 1.01 * begin})

@@ -51,7 +51,7 @@ def by_law(scene: Scene, *s: float) -> dict[str, np.ndarray]:
     """Return components by the elastic law of the only cable in its drawn shape."""
     (wire,) = scene.cables.values()
     cuts = Cuts(build(scene).cables[0], np.array([s]), after=True)
-    force, moment, axes, strain = constitutive(wire, wire.nodal_vectors[None], cuts)
+    force, moment, axes, strain = constitutive(wire, wire.nodal_vectors[None], cuts, np.zeros(1))
     return {"force": force, "moment": moment} | components(wire, force, moment, axes, strain)
 
 

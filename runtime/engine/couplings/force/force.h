@@ -40,7 +40,7 @@ void fu_add_force_change(const fu_model *model, const fu_point_force *between, c
                          double factor, double *f);
 
 /* couplings/force/segments.c; the first computes the gap between the points and, unless null, its rate; the second
- * makes them those that the law takes, along the same line and shorter by a prescribed change of length, and returns
+ * makes them those that the law takes of a prescribed length, along the same line, shorter by its change, and returns
  * the ratio of the gaps; fu_gap does both. */
 void fu_gap_of_points(const fu_model *model, const fu_point_force *between, const fu_state *state, double gap[3],
                       double *rate);

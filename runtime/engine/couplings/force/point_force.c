@@ -255,7 +255,7 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
         gap[d] = motions[1].at.p[d] - motions[0].at.p[d];
         rate[d] = motions[1].at.v[d] - motions[0].at.v[d];
     }
-    const double taken = fu_shorten_gap(between, state, gap, rate);
+    const double taken = between->length_dof < 0 ? 1.0 : fu_shorten_gap(between, state, gap, rate);
     if (known) memcpy(by_gap, known, sizeof by_gap);
     else if (between->senses[segment] != FU_HAS_NO_FORCE)
         between->law->tangent(fu_segment_parameters(between, state->q, segment, scaled), gap, rate, force, by_gap,

@@ -51,7 +51,6 @@ void fu_gap_of_points(const fu_model *model, const fu_point_force *between, cons
 
 double fu_shorten_gap(const fu_point_force *between, const fu_state *state, double gap[3], double *rate)
 {
-    if (between->length_dof < 0) return 1.0;
     const double distance = sqrt(fu_dot(between->dim, gap, gap));
     const double ratio = (distance - state->q[between->length_dof]) / distance;
     for (int d = 0; d < between->dim; ++d) {
@@ -64,7 +63,7 @@ double fu_shorten_gap(const fu_point_force *between, const fu_state *state, doub
 void fu_gap(const fu_model *model, const fu_point_force *between, const fu_state *state, double gap[3], double *rate)
 {
     fu_gap_of_points(model, between, state, gap, rate);
-    fu_shorten_gap(between, state, gap, rate);
+    if (between->length_dof >= 0) fu_shorten_gap(between, state, gap, rate);
 }
 
 /* Returns the segment of the distance of the points. */
