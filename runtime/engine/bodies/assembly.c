@@ -201,7 +201,8 @@ void fu_discrete_forces(const fu_model *model, const double *q, const double *q_
 {
     double part[FU_MAX_COORDINATES];
     FU_EACH_CABLE(cable, model) {
-        FU_EACH_ELEMENT(k, at, cable) {
+        FU_EACH_ELEMENT(k, at, cable)
+        {
             if (cable->growth >= 0) fu_grown_discrete_force(cable, k, q, q_next, part);
             else
                 cable->law->discrete_force(fu_element_length(cable, k), q + at, q_next + at,
@@ -409,7 +410,8 @@ void fu_add_cables_at_rest(const fu_model *model, const double *q, fu_at_rest wh
     double K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
     FU_EACH_CABLE(cable, model) {
         const int n = cable->coordinates;
-        FU_EACH_ELEMENT(k, at, cable) {
+        FU_EACH_ELEMENT(k, at, cable)
+        {
             element_at_rest(cable, k, q, model->zero, which, K);
             for (int i = 0; i < n; ++i)
                 for (int j = i; j < n; ++j) band[(long)(at + i) * stride + j - i] += K[i * n + j];
@@ -422,7 +424,8 @@ double fu_constant_kinetic_energy(const fu_model *model, const double *q, const 
 {
     double total = 0.0, part[FU_MAX_COORDINATES];
     FU_EACH_CABLE(cable, model) {
-        FU_EACH_ELEMENT(k, at, cable) {
+        FU_EACH_ELEMENT(k, at, cable)
+        {
             cable->kernel->inertia_force(fu_element_mass(cable, k), v + at, part);
             for (int i = 0; i < cable->coordinates; ++i) total += 0.5 * part[i] * v[at + i];
         }
@@ -435,7 +438,8 @@ double fu_constant_elastic_energy(const fu_model *model, const double *q)
 {
     double total = 0.0, part;
     FU_EACH_CABLE(cable, model) {
-        FU_EACH_ELEMENT(k, at, cable) {
+        FU_EACH_ELEMENT(k, at, cable)
+        {
             if (cable->growth >= 0) part = fu_grown_energy(cable, k, q);
             else cable->law->energy(fu_element_length(cable, k), q + at, fu_element_constants(cable, k), &part);
             total += part;
@@ -477,7 +481,8 @@ double fu_internal_dissipation(const fu_model *model, const double *q, const dou
     FU_EACH_CABLE(cable, model) {
         int end = 0; /* of the last chunk */
         if (cable->tau <= 0.0 && cable->mass_damping <= 0.0) continue;
-        FU_EACH_ELEMENT(k, at, cable) {
+        FU_EACH_ELEMENT(k, at, cable)
+        {
             const double mass_damping = fu_piece_of(cable, k)->mass_damping;
             if (cable->tau > 0.0 && k == end) {
                 const fu_elements of = elements_from(cable, q, v, k);

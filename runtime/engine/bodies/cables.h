@@ -25,17 +25,17 @@ typedef struct {
     const double *nodes;   /* arc-lengths of the nodes, m; null where the elements are equal */
     const fu_cable_piece *pieces;
     double tau, mass_damping; /* the largest of its pieces */
-    const double *m;       /* mass matrix of the first element over nodal vectors */
-    int l_stride;          /* from one element's length to the next's: zero for equal elements */
-    int m_stride;          /* from one element's mass matrix to the next's: zero for equal elements */
-    const double *A;       /* constants of the law, of the first element */
-    int A_stride;          /* from one element's constants to the next's: zero for equal elements */
+    const double *m;          /* mass matrix of the first element over nodal vectors */
+    int l_stride;             /* from one element's length to the next's: zero for equal elements */
+    int m_stride;             /* from one element's mass matrix to the next's: zero for equal elements */
+    const double *A;          /* constants of the law, of the first element */
+    int A_stride;             /* from one element's constants to the next's: zero for equal elements */
     /* of each vector of a node: largest displacement of points of its elements by a unit of it; null if unknown */
     const double *share;
-    int tension_only;      /* nonzero for a law with reduced stiffness in compression */
+    int tension_only; /* nonzero for a law with reduced stiffness in compression */
     /* dof of the growth factor of the stress-free length, -1 for none (bodies/growth.c); orders of the derivatives by
-     * the arc-length of the vectors of a node; constants of the law as A, with negative bending stiffness, null where no
-     * signal prescribes the growth */
+     * the arc-length of the vectors of a node; constants of the law as A, with negative bending stiffness, null where
+     * no signal prescribes the growth */
     int growth;
     const int *orders;
     const double *growth_constants;
@@ -96,8 +96,7 @@ static inline int fu_cable_end(const fu_cable *cable)
 /* Loops over the elements and over the nodes of a cable, with the entry in q of the first coordinate of each. */
 #define FU_EACH_ELEMENT(k, at, cable)                                                                                  \
     for (int k = 0, at; k < (cable)->n_elements && (at = fu_element_entry(cable, k), 1); ++k)
-#define FU_EACH_NODE(at, cable)                                                                                        \
-    for (int at = (cable)->first; at < fu_cable_end(cable); at += (cable)->per_node)
+#define FU_EACH_NODE(at, cable) for (int at = (cable)->first; at < fu_cable_end(cable); at += (cable)->per_node)
 
 /* Returns the length of a cable, m. */
 static inline double fu_cable_length(const fu_cable *cable)

@@ -113,7 +113,8 @@ void fu_grown_damping_force(const fu_cable *cable, int element, const double *q,
 {
     fu_grown grown;
     grow_moving(cable, element, q, v, &grown);
-    cable->law->damping_force(grown.l, grown.e, grown.v, fu_element_constants(cable, element), fu_piece_of(cable, element)->tau, f);
+    cable->law->damping_force(grown.l, grown.e, grown.v, fu_element_constants(cable, element),
+                              fu_piece_of(cable, element)->tau, f);
     fu_forces_on_given(cable, grown.g, f);
 }
 
@@ -123,7 +124,8 @@ void fu_grown_damping_tangent(const fu_cable *cable, int element, const double *
 {
     fu_grown grown;
     grow_moving(cable, element, q, v, &grown);
-    cable->law->damping_tangent(grown.l, grown.e, grown.v, fu_element_constants(cable, element), fu_piece_of(cable, element)->tau, rate, K);
+    cable->law->damping_tangent(grown.l, grown.e, grown.v, fu_element_constants(cable, element),
+                                fu_piece_of(cable, element)->tau, rate, K);
     matrix_of_given(cable, grown.g, cable->coordinates, 1, K);
 }
 
@@ -132,7 +134,8 @@ double fu_grown_dissipation(const fu_cable *cable, int element, const double *q,
     fu_grown grown;
     double power;
     grow_moving(cable, element, q, v, &grown);
-    cable->law->dissipation(grown.l, grown.e, grown.v, fu_element_constants(cable, element), fu_piece_of(cable, element)->tau, &power);
+    cable->law->dissipation(grown.l, grown.e, grown.v, fu_element_constants(cable, element),
+                            fu_piece_of(cable, element)->tau, &power);
     return power;
 }
 
@@ -203,9 +206,10 @@ void fu_add_growth_rate_forces(const fu_model *model, const double *q, const dou
     EACH_GROWING_ELEMENT(cable, k, model)
     {
         fu_grown grown;
-        if (!(fu_piece_of(cable, element)->tau > 0.0)) break;
+        const double tau = fu_piece_of(cable, k)->tau;
+        if (!(tau > 0.0)) continue;
         grow_moving(cable, k, q, v, &grown);
-        cable->law->damping_force(grown.l, grown.e, grown.v, fu_element_constants(cable, k), fu_piece_of(cable, element)->tau, force);
+        cable->law->damping_force(grown.l, grown.e, grown.v, fu_element_constants(cable, k), tau, force);
         f[cable->growth] += fu_growth_force(cable, &grown, force);
     }
 }

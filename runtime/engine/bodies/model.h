@@ -64,8 +64,7 @@ struct fu_model {
 static inline fu_range fu_rope_dofs(const fu_model *model)
 {
     const fu_cable *last = model->n_cables ? &model->cables[model->n_cables - 1] : 0;
-    return (fu_range){last ? fu_cable_end(last) : 0,
-                      model->n_bodies ? model->bodies[0].dof : model->n_dof};
+    return (fu_range){last ? fu_cable_end(last) : 0, model->n_bodies ? model->bodies[0].dof : model->n_dof};
 }
 
 /* Loops over the cables and over the bodies of a model. */

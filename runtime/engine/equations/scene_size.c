@@ -29,7 +29,8 @@ double fu_largest_motion(const fu_model *model, const double *from, const double
 {
     double largest = 0.0;
     FU_EACH_CABLE(cable, model) {
-        FU_EACH_NODE(at, cable) {
+        FU_EACH_NODE(at, cable)
+        {
             const double square = square_between(from + at, to + at, cable->kernel->dim);
             if (square > largest) largest = square;
         }
@@ -73,9 +74,8 @@ double fu_controlled_motion(const fu_run *run)
     const fu_model *model = run->model;
     const double *weight = run->controlled, *from = run->first, *to = run->now.q;
     double square = 0.0, largest = 0.0;
-    FU_EACH_CABLE(cable, model)
-        FU_EACH_NODE(at, cable)
-            square = fmax(square, square_moved(weight + at, from + at, to + at, cable->kernel->dim));
+    FU_EACH_CABLE(cable, model) FU_EACH_NODE(at, cable)
+    square = fmax(square, square_moved(weight + at, from + at, to + at, cable->kernel->dim));
     FU_EACH_BODY(body, model) {
         const int at = body->configuration, mode = at + body->kernel->configuration;
         const double *of_modes = weight + body->dof + body->kernel->velocity;
@@ -116,9 +116,8 @@ double fu_scene_size(const fu_model *model, const double *origin, const double *
 {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     double largest = fu_extent(model, origin, origin);
-    FU_EACH_CABLE(cable, model)
-        FU_EACH_NODE(at, cable)
-            widen(model->dim, q + at, low, high);
+    FU_EACH_CABLE(cable, model) FU_EACH_NODE(at, cable)
+    widen(model->dim, q + at, low, high);
     FU_EACH_COUPLING(c, model->couplings, model->n_couplings) {
         const int nodes = c->type == &fu_span_type ? ((const fu_span_coupling *)c)->on.n_elements + 1 : 0;
         for (int k = 0; k < nodes; ++k)

@@ -122,10 +122,10 @@ static double reach_of(const fu_model *model, const fu_contact *contact, const f
     if (contact->cable < 0) return INFINITY;
     const fu_cable *cable = &model->cables[contact->cable];
     FU_EACH_NODE(i, cable)
-        fastest = fmax(fastest, sqrt(fu_dot(model->dim, state->v + i, state->v + i)));
+    fastest = fmax(fastest, sqrt(fu_dot(model->dim, state->v + i, state->v + i)));
     if (!on->n) return h * fastest;
     FU_EACH_NODE(i, cable)
-        for (int d = 0; d < model->dim; ++d) farthest = fmax(farthest, fabs(state->q[i + d] - on->p[d]));
+    for (int d = 0; d < model->dim; ++d) farthest = fmax(farthest, fabs(state->q[i + d] - on->p[d]));
     return h * (fastest + sqrt(fu_dot(model->dim, on->v, on->v)) +
                 2.0 * farthest * sqrt(fu_dot(model->dim == 3 ? 3 : 1, on->omega, on->omega)));
 }

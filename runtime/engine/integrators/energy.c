@@ -126,7 +126,8 @@ static void mean_stress(fu_run *run, double stiffness)
     double k[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
     FU_EACH_CABLE(cable, model) {
         const int dim = cable->kernel->dim, n = cable->coordinates / dim;
-        FU_EACH_ELEMENT(e, at, cable) {
+        FU_EACH_ELEMENT(e, at, cable)
+        {
             if (cable->growth >= 0) fu_grown_step_stiffness(cable, e, run->now.q, run->next.q, k);
             else
                 cable->law->step_stiffness(fu_element_length(cable, e), run->now.q + at, run->next.q + at,

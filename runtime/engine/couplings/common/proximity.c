@@ -38,7 +38,8 @@ double fu_most_of_cable(const fu_cable *cable, const double *to, const double *f
     for (int k = 0; k < vectors; ++k) {
         double most = 0.0;
         if (cable->share[k] == 0.0) continue;
-        FU_EACH_NODE(node, cable) {
+        FU_EACH_NODE(node, cable)
+        {
             const int first = node + k * dim;
             double square = 0.0;
             for (int d = 0; d < dim; ++d) {

@@ -107,8 +107,7 @@ void fu_line_bends_at(const fu_model *model, const fu_crossing *crossing, const 
     for (int line = 0; line < dim - 1 && crossing->cables[line] >= 0; ++line) {
         const fu_cable *cable = &model->cables[crossing->cables[line]];
         const int n = cable->coordinates / dim, element = points->line[line].element;
-        const double *q = state->q + fu_element_entry(cable, element),
-                     *v = state->v + fu_element_entry(cable, element);
+        const double *q = state->q + fu_element_entry(cable, element), *v = state->v + fu_element_entry(cable, element);
         const double s = points->s[line];
         if (s < 0.0 || s > fu_cable_length(cable)) continue; /* straight beyond the ends */
         cable->kernel->slopes(fu_element_length(cable, element), s - fu_cable_start(cable, element), every);

@@ -104,7 +104,8 @@ static double path_of_line(const line_approach *of, int line, const double *mean
         const double share = cable->share ? cable->share[k] : k ? cable->length : 1.0;
         double most = 0.0;
         if (share == 0.0) continue;
-        FU_EACH_NODE(node, cable) {
+        FU_EACH_NODE(node, cable)
+        {
             const int at = node + k * dim;
             most = fmax(most, fu_longest_path(dim, now->q + at, now->v + at, next->q + at, next->v + at,
                                               k ? still : mean, of->h));
@@ -118,8 +119,7 @@ static double path_of_line(const line_approach *of, int line, const double *mean
 static void mean_velocity(const line_approach *of, double mean[3])
 {
     const fu_cable *cable = &of->model->cables[of->crossing->cables[0]];
-    for (int d = 0; d < of->model->dim; ++d)
-        FU_EACH_NODE(node, cable) mean[d] += of->now->v[node + d] / cable->n_nodes;
+    for (int d = 0; d < of->model->dim; ++d) FU_EACH_NODE(node, cable) mean[d] += of->now->v[node + d] / cable->n_nodes;
 }
 
 double fu_crossing_detect_within(const fu_model *model, const fu_crossing *crossing, const fu_state *now,

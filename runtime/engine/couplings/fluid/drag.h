@@ -71,8 +71,8 @@ typedef struct {
     double added[9]; /* added mass: of a cable across and along it, kg/m; of a body in its axes (dim x dim), kg */
     int n_points;    /* of quadrature on an element */
     int stride;      /* points from one element's tables to the next's: 0 for equal elements */
-    const double *weights, *N, *N_x, *N_chord; /* from the first element on, weights in m; shape functions, their slopes; of a beam's foil those of
-                                                  the director along the chord */
+    const double *weights, *N, *N_x, *N_chord; /* from the first element on, weights in m; shape functions, their
+                                                  slopes; of a beam's foil those of the director along the chord */
     fu_attachment attachments[1];
 } fu_drag;
 extern const fu_coupling_type fu_drag_type;
