@@ -5,9 +5,10 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Mapping
 from dataclasses import field
-from typing import Annotated, Any
+from typing import Any
 
-from pydantic import PlainValidator
+from pydantic import GetCoreSchemaHandler, PlainValidator
+from pydantic_core.core_schema import CoreSchema, any_schema
 
 from ..base.deferred import dataclass
 
@@ -17,6 +18,10 @@ class GivenAs:
 
     def __init__(self, schema: Mapping[str, Any]):
         self.schema = schema
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        """Return pydantic's schema of the annotated values, of any where this stands for their type."""
+        return any_schema() if source is self else handler(source)
 
     def __get_pydantic_json_schema__(self, core_schema: Any, handler: Any) -> dict[str, Any]:
         """Return the schema, for pydantic."""
@@ -68,7 +73,7 @@ class Check(PlainValidator):
 
 def checked(check: Callable[..., Any], schema: Mapping[str, Any], about: About | None = None) -> Check:
     """Return a check of values; schema: JSON Schema of the values in scene files."""
-    return Check(check, json_schema_input_type=Annotated[Any, GivenAs(schema)], about=about)
+    return Check(check, json_schema_input_type=GivenAs(schema), about=about)
 
 
 ONLY_PYTHON: dict[str, Any] = {"not": {}}
