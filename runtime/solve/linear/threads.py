@@ -101,6 +101,6 @@ def _let_this_thread_set_limits() -> None:
 
 @cache
 def _blas() -> ThreadpoolController:
-    from threadpoolctl import ThreadpoolController
+    from threadpoolctl import ThreadpoolController  # for runs alone
 
     return ThreadpoolController().select(user_api="blas")
