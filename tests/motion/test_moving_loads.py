@@ -6,6 +6,7 @@ from changing_loads import (
     DEFLECTION_RATIO,
     INTEGRATORS,
     PUBLISHED,
+    STEEL,
     TRAIN,
     F,
     L,
@@ -18,7 +19,7 @@ from changing_loads import (
     under_range,
 )
 from expectations import energy_error, largest, refused
-from funicular import Harmonic, Pulse, Ramp, Scene, TableSignal
+from funicular import Harmonic, Piece, Pulse, Ramp, Rectangle, Scene, TableSignal
 from funicular.model.breakpoints import breakpoints
 from funicular.model.build import build
 from interrupted_runs import check_file_and_resume
@@ -156,6 +157,29 @@ def test_at_rest_it_stands_where_it_starts():
     for rest in (scene.equilibrium(), fixed.equilibrium()):
         moment = rest.section_forces("beam", s)["moment"].values[..., 2]
         np.testing.assert_allclose(moment, F * np.array([0.6, 2.4, 1.2]), rtol=1e-6)
+
+
+def test_it_crosses_the_joint_of_two_pieces():
+    """Slowly: the joint deflects as under fixed forces at rest, and the moments under the force are F s (L - s)/L."""
+    def stepped() -> Scene:
+        scene = Scene(gravity=(0, 0, 0))
+        pieces = [Piece(length=length, section=Rectangle(height=depth, width=0.1), material=STEEL, elements=4)
+                  for length, depth in ((4.0, 0.1), (6.0, 0.2))]
+        scene.cable("beam", start=(0, 0, 0), end=(L, 0, 0), element="cable8p", pieces=pieces)
+        scene.pin("beam", s=0.0)
+        scene.pin("beam", s=L)
+        return scene
+
+    scene = stepped()
+    scene.force("beam", s=walk(0.0, L, 1000.0), value=(0, -F, 0))
+    run = scene.run(1000.0, output_step=100.0, integrator="genalpha", step=1.0, spectral_radius=0.0)
+    for k in (2, 4, 5, 7):
+        fixed = stepped()
+        fixed.force("beam", s=float(k), value=(0, -F, 0))
+        expected = fixed.equilibrium()["beam.nodal_vectors"][4, 0, 1]
+        assert abs(run["beam.nodal_vectors"][k, 4, 0, 1] / expected - 1) < 1e-4
+        moment = run.section_forces("beam", [float(k)])["moment"].values[k, 0, 2]
+        assert abs(moment / (F * k * (L - k) / L) - 1) < 1e-4
 
 
 def test_the_moment_under_it():
