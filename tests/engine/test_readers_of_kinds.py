@@ -47,7 +47,6 @@ PLACES = {
         "model/part_states.py", "results/section_forces/cable_loads.py"],
     "what the integrator \"energy\" cannot do beside couplings without step equations": [
         "solve/motion/integrator_choice.py"],
-    "joints with an end on a slide, whose constraints are not linear": ["solve/motion/linear_model.py"],
 }
 
 
@@ -57,7 +56,7 @@ SCENE_PLACES = {
         "solve/notes/uncontrolled_errors.py", "solve/statics/relaxation.py", "solve/statics/static.py",
         "solve/statics/sticking_ropes.py"],
     "points that move along a cable: slides and crossings": [
-        "choice/chooser.py", "results/animation/curves.py", "results/animation/references.py",
+        "choice/chooser.py", "choice/probes.py", "results/animation/curves.py", "results/animation/references.py",
         "results/animation/sources.py", "results/charts.py", "results/section_forces/forces.py",
         "results/trajectories.py", "solve/motion/event_handler.py", "solve/motion/run.py",
         "solve/notes/coarse_slides.py", "solve/notes/diagnosis.py", "solve/notes/supersonic_loads.py"],
@@ -75,7 +74,8 @@ SCENE_PLACES = {
         "choice/motion.py", "parts/locations.py", "results/animation/clips.py", "results/animation/frames.py",
         "results/animation/ropes.py", "results/error_estimate.py", "results/pictures.py",
         "results/section_forces/ropes.py"],
-    "ropes, which the linear model does not have": ["solve/motion/linear_model.py"],
+    "ropes, and friction, stops and frames of slides, which the linear model does not have": [
+        "solve/motion/linear_model.py"],
     "parameters that are adjusted": [
         "solve/adjustment/adjustment.py", "solve/adjustment/length_changes.py",
         "solve/adjustment/parameter_changes.py", "solve/adjustment/parameter_search.py",
