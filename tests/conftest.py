@@ -30,6 +30,7 @@ def engine(monkeypatch, tmp_path):
     def simulate(scene, settings, on_progress, **_):
         module.calls.append(settings)
         on_progress(settings.duration / 2)
+        yield 0  # the end of a stage
         return fake_recording(scene, **module.outcome)
 
     module.simulate = simulate

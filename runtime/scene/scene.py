@@ -220,7 +220,8 @@ class Scene(Viewable, DescribedScene):
                     state = _at_rest(settings.initial, self, None if chosen is None else chosen.rest)
             flat = in_plane(self)
             with progress_bar(settings.duration, progress) as on_progress:
-                simulation = yield from simulate(flat, settings, on_progress, state, stream, trials)
+                simulation = yield from simulate(flat, settings, on_progress, initial=state, stream=stream,
+                                                 trials=trials)
             recording = recorded(simulation, flat, settings, timed)
             if chosen is not None:
                 recording.report["choice"] = chosen.facts()

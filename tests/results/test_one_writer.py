@@ -221,7 +221,11 @@ def without_rows(recording):
 def test_a_run_that_stops_before_its_first_row(engine, tmp_path):
     """No file, no checkpoint, an unchanged older file; the run reports that it has no rows."""
     whole = engine.simulate
-    engine.simulate = lambda *given, **named: without_rows(whole(*given, **named))
+
+    def simulate(*given, **named):
+        return without_rows((yield from whole(*given, **named)))
+
+    engine.simulate = simulate
     (tmp_path / "old.nc").write_text("old")
     for save in (None, tmp_path / "x.nc", tmp_path / "old.nc"):
         with pytest.raises(ConvergenceError) as error:
