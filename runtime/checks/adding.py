@@ -71,14 +71,6 @@ def _warmed(scene: SceneData, cable: Cable) -> Cable:
     return warm
 
 
-def _placed_rope(scene: SceneData, rope: Rope) -> Rope:
-    """Return a rope complete. Raises SceneError where the scene has a temperature."""
-    if scene.temperature is not None:
-        raise SceneError(rope.where, "the scene has a temperature, but the length of a rope does not change with it",
-                         "give cables their temperature, and the rope its length")
-    return placed_rope(scene, rope)
-
-
 def _lie_in_one_plane(cable: Cable, other: Cable) -> bool:
     """Return whether two planar cables lie in one plane, with one normal."""
     one, two = cable.plane, other.plane
@@ -88,7 +80,7 @@ def _lie_in_one_plane(cable: Cable, other: Cable) -> bool:
 
 
 _CHECKS: dict[type[Part], Callable[[SceneData, Any], Part]] = {
-    Cable: placed_cable, Support: placed_support, Tie: placed_tie, Rope: _placed_rope, Joint: placed_joint,
+    Cable: placed_cable, Support: placed_support, Tie: placed_tie, Rope: placed_rope, Joint: placed_joint,
     Slide: placed_slide, Load: rope_loads.placed, PointForce: placed_point_force, Event: placed_event,
     Fluid: placed_fluid, Drag: placed_drag, Crossing: placed_crossing, Surface: placed_surface, Contact: placed_contact}
 

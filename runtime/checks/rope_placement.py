@@ -33,6 +33,9 @@ tangent point on an almost straight rope then has little inertia."""
 
 def placed_rope(scene: SceneData, rope: Rope) -> Rope:
     """Return the rope with complete attachments, checked to lie in the plane and to have a possible route."""
+    if scene.temperature is not None:
+        raise SceneError(rope.where, "the scene has a temperature, but the length of a rope does not change with it",
+                         "give cables their temperature, and the rope its length")
     for cable in scene.cables.values():
         _check_pair(rope.where, rope, cable)
     if other := next((each for each in scene.ropes.values() if each.dim != rope.dim), None):

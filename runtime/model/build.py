@@ -38,9 +38,7 @@ def build(scene: SceneData, supplied: bool = False) -> Model:
         n_flexible = cables[-1].coordinates.stop
     ropes = rope_models(scene, n_flexible, supplied)
     driven = DrivenDofs.of(scene, ropes[-1].coordinates.stop if ropes else n_flexible)
-    for each, part in zip(cables, scene.cables.values(), strict=True):
-        driven.let_grow(each, part.where)
-    bodies = body_models(scene, driven.stop)
+    bodies = body_models(scene, driven.let_grow(cables, scene))
     nodal = [cable.vectors[..., :dim].copy() for cable in drawn]
     level_tied_slopes(scene, nodal)
     nodes = {model.name: _nodes(model, scene.cables[model.name].where, vectors)
@@ -49,9 +47,8 @@ def build(scene: SceneData, supplied: bool = False) -> Model:
     reduction = supports(scene, nodes, builder.signals.add).reduce(n_flexible, elements_of(cables), attached(scene))
     couplings = [model for kind in COUPLINGS for model in kind.models(builder)]
     n_extra, n_multipliers = number(couplings)
-    still = 0 * driven.start
     n_of_bodies = sum(dofs_of(body, dim) for body in bodies)
-    is_free = np.concatenate([*(~rope.fixed for rope in ropes), still > 0, np.ones(n_of_bodies, dtype=bool)])
+    is_free = np.concatenate([*(~rope.fixed for rope in ropes), driven.still > 0, np.ones(n_of_bodies, dtype=bool)])
     beside_cables = np.where(is_free, reduction.n_unknowns + is_free.cumsum() - 1, -1)
     numbering = reduction.numbering
     model = Model(
@@ -61,12 +58,12 @@ def build(scene: SceneData, supplied: bool = False) -> Model:
          *driven.motions(builder.signals)],
         q=_joined(*(vectors.ravel() for vectors in nodal), *(rope.q for rope in ropes), driven.start,
                   *(configuration_of(body, dim) for body in described)),
-        v=_joined(cable_rates(scene, reduction), *(0 * rope.q for rope in ropes), still,
+        v=_joined(cable_rates(scene, reduction), *(0 * rope.q for rope in ropes), driven.still,
                   *(velocity_of(body, dim) for body in described)),
-        weight=_joined(*(cable.weights for cable in drawn), *(rope.weight for rope in ropes), still,
+        weight=_joined(*(cable.weights for cable in drawn), *(rope.weight for rope in ropes), driven.still,
                        *(body_weights(body, dim) for body in described)),
         gravity=_joined(*(cable.gravity(gravity) for cable in drawn),
-                        *(0 * rope.q for rope in ropes), still,
+                        *(0 * rope.q for rope in ropes), driven.still,
                         *(body_gravity(body, gravity) for body in bodies)),
         unknown_of_dof=np.append(reduction.unknown_of_dof, beside_cables).astype(int),
         combinations=reduction.combinations,
@@ -78,8 +75,7 @@ def build(scene: SceneData, supplied: bool = False) -> Model:
         chains=numbering.chains,
         nodes=nodes,
         tables=[tables_of(name) for name in scene.libraries],
-        plane_axes=scene.plane_axes,
-        driven=range(driven.first, driven.stop),
+        plane_axes=scene.plane_axes, driven=range(driven.first, driven.stop),
     )
     for rope in ropes:
         follow(model, rope)

@@ -7,6 +7,7 @@ energy, and its work is that of a support. A growth factor other than 1 has one 
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,19 +36,21 @@ class DrivenDofs:
         parts: list[Cable | PointForce] = [*scene.cables.values(), *scene.point_forces.values()]
         return cls(first, {(part.where, what): driven for part in parts for what, driven in part.driven().items()})
 
-    def let_grow(self, cable: CableModel, where: str) -> None:
-        """Give a cable, named `where` in messages, the dof of its growth factor."""
-        driven = self.driven.get((where, GROWTH))
-        if driven is None:
-            return
-        cable.growth = self.dofs[where, GROWTH]
-        if driven.signal is not None:
-            cable.growth_constants = cable.A.copy()
-            cable.growth_constants[:, BENDING] *= -1
+    def let_grow(self, cables: Iterable[CableModel], scene: SceneData) -> int:
+        """Give the cables of a scene the dofs of their growth factors; return `stop`."""
+        for cable, part in zip(cables, scene.cables.values(), strict=True):
+            driven = self.driven.get((part.where, GROWTH))
+            if driven is None:
+                continue
+            cable.growth = self.dofs[part.where, GROWTH]
+            if driven.signal is not None:
+                cable.growth_constants = cable.A.copy()
+                cable.growth_constants[:, BENDING] *= -1
+        return self.stop
 
     @property
     def dofs(self) -> dict[tuple[str, str], int]:
-        """Return their dofs."""
+        """Return the dof of each."""
         return {key: self.first + k for k, key in enumerate(self.driven)}
 
     @property
@@ -59,6 +62,11 @@ class DrivenDofs:
         """Return how they follow their signals, which are stored."""
         return [MotionModel(dof, signals.add(each.signal), each.base, each.linear, 0.0, 0.0)
                 for dof, each in enumerate(self.driven.values(), self.first) if each.signal is not None]
+
+    @property
+    def still(self) -> np.ndarray:
+        """Return (n,): zeros, for what they do not have."""
+        return np.zeros(len(self.driven))
 
     @property
     def start(self) -> np.ndarray:

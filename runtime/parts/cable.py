@@ -190,10 +190,10 @@ class Cable(DrawnCable, CableFields):
         """Raise ValueError(cause, remedy) where its stress-free length cannot grow as given."""
         warm, growth = self.temperature, self.growth
         expansions = {piece.material.thermal_expansion for piece in self.uniform_pieces}
-        if warm is not None and None in expansions:
+        if warm is not None and warm != 0.0 and None in expansions:
             raise ValueError("has a temperature, but its material has no thermal_expansion",
                              "give the material one, 0 for a cable that keeps its length")
-        if warm is not None and len(expansions) > 1:
+        if warm is not None and warm != 0.0 and len(expansions) > 1:
             raise ValueError("has a temperature, and pieces of several thermal_expansion", "give all pieces one, or a "
                              "cable to each piece and join them by ties")
         if isinstance(self.rest_length, Signal) and growth.signal is not self.rest_length:

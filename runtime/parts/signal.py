@@ -10,7 +10,7 @@ import itertools
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import comb, pi
 from numbers import Real
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Self, get_args
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -508,8 +508,7 @@ def varying(limit: Check) -> Check:
             raise ValueError(f"{error.args[0]}, the least value of the signal", *error.args[1:]) from None
         return made
 
-    _, number = get_args(limit.json_schema_input_type)
-    return checked(check, {"anyOf": [number.schema, SIGNALS.schema]})
+    return checked(check, {"anyOf": [limit.json_schema_input_type.schema, SIGNALS.schema]})
 
 
 def at_start(value: "float | Signal") -> float:

@@ -164,7 +164,7 @@ OTHERS = {
               "material": fu.Material(youngs_modulus=2e9, poisson_ratio=0.3, density=1000), "up": (0, 1, 1),
               "pieces": [fu.Piece(length=0.5, section=fu.Circle(radius=0.02), elements=n, material=fu.Material(
                   youngs_modulus=2e9, poisson_ratio=0.3, density=density)) for density, n in ((1000, 4), (2000, 8))],
-              "rest": "straight", "rest_length": 1.0, "shape": "straight",
+              "rest": "straight", "rest_length": 1.0, "shape": "straight", "temperature": 0.0,
               "velocity": (0, 0, 1), "angular_velocity": (0, 1, 0)},
     "pin": {"cable": "hook", "s": 0.25}, "clamp": {"cable": "rope", "s": 0.0, "fix": "section"},
     "motion": {"cable": "rope", "s": 0.75, "displacement": (0, 0, 0), "rotation": ((1, 0, 0), 0.1)},
