@@ -85,8 +85,12 @@ def build(scene: SceneData, supplied: bool = False) -> Model:
 
 def elements_of(cables: list[CableModel]) -> np.ndarray:
     """Return (elements, 2): the first dof and the number of dofs of each element, by cable."""
-    found = [cable.dofs_of(k) for cable in cables for k in range(cable.n_elements)]
-    return np.array([(dofs.start, dofs.stop - dofs.start) for dofs in found], dtype=int).reshape(-1, 2)
+    found = [np.zeros((0, 2), dtype=int)]
+    for cable in cables:
+        size = math.prod(cable.shape[1:])
+        first = cable.first + size * cable.mesh.first_node(np.arange(cable.n_elements))
+        found.append(np.stack([first, np.full(len(first), 2 * size)], axis=1))
+    return np.concatenate(found)
 
 
 def _joined(*arrays: np.ndarray) -> np.ndarray:

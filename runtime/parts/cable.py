@@ -172,7 +172,8 @@ class Cable(DrawnCable, CableFields):
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Return a copy with other values of fields; its shape follows from them."""
         made = super().model_copy(update=update, deep=deep)
-        vars(made).pop("_shape", None)
+        for name in ("_shape", "uniform_pieces"):
+            vars(made).pop(name, None)
         return made
 
     def hanging_through(self, points: Iterable[tuple[float, ...]]) -> "Cable":

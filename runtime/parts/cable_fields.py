@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable
+from functools import cached_property
 from itertools import accumulate, pairwise
 from typing import Annotated, Any
 
@@ -108,7 +109,7 @@ class CableFields(Part):
         """Return the number of its elements, 1 where it is still to be chosen."""
         return 1 if self.is_open else self.elements
 
-    @property
+    @cached_property
     def uniform_pieces(self) -> tuple[UniformPiece, ...]:
         """Return its pieces, one of a cable with one section and one material.
 

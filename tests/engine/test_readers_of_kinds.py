@@ -25,6 +25,8 @@ PLACES = {
     "joints close loops, in which equations are redundant; their ends and angles are prescribed": [
         "model/redundant_constraints.py", "solve/adjustment/change.py", "solve/notes/sensitivity.py",
         "solve/statics/turns.py"],
+    "accelerations of pieces of a cable, whose tangents joints keep parallel": [
+        "results/section_forces/nodal_forces.py"],
     "an instant or a frequency of fluids: their signals, tables and added mass": [
         "model/drag_forces.py", "model/breakpoints.py", "results/section_forces/balance_limits.py",
         "solve/statics/string_start.py"],

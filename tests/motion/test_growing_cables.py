@@ -37,7 +37,7 @@ def pull(state: fu.Equilibrium) -> float:
 def test_horizontal_force_of_a_line(temperature, force, validated):
     """The elastic catenary of the grown stress-free length, whose weight stays."""
     rest = string(temperature).equilibrium()
-    validated("statics", f"line of EA 1e6 N, 100 m, 10 N/m, at {temperature} K", "horizontal force", force, pull(rest),
+    validated("Statics", f"line of EA 1e6 N, 100 m, 10 N/m, at {temperature} K", "horizontal force", force, pull(rest),
               unit="N", bound=1e-8, source="elastic catenary, weight kept, 1.2e-5 1/K", mesh="32 elements")
     tension = rest.section_forces("line").tension.values
     constitutive = rest.section_forces("line", method="constitutive").tension.values
