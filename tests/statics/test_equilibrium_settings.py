@@ -43,6 +43,7 @@ def solvers(monkeypatch):
 
     def simulate(scene, settings, on_progress, **start):
         calls.model.append((settings.initial, start))
+        yield 0  # the end of a stage
         return fake_recording(scene)
 
     static.equilibrium, modal.modes, model.simulate = equilibrium, modes, simulate
