@@ -188,7 +188,7 @@ static int iterate(fu_run *run, const fu_linear_space *w, double h)
     const step_weights weights = weights_of(run, h);
     const double *L = factor_of(run, h), tolerance = enough(run);
     if (!L) return 1;
-    double begin = fu_clock(), last = INFINITY, before;
+    double begin = fu_clock(), last = INFINITY, before = INFINITY;
     if (begin_step(run, w, &weights, L, h, &before)) return 1;
     run->statistics.time_residual += fu_clock() - begin;
     for (int i = 0; i < MOST_ITERATIONS; ++i) {
