@@ -127,7 +127,8 @@ def _wave_number(cable: Cable, run: Run, s: np.ndarray, shears: bool) -> float:
     if shears:
         left = 1.0 - beyond / _shear_stiffness(cable)
         beyond = np.where(left > 0, beyond / np.maximum(left, 1e-12), bending * MAX_WAVE_NUMBER**2)
-    k = np.minimum(np.sqrt(beyond / bending), MAX_WAVE_NUMBER)
+    shortest = np.where(beyond > 0, MAX_WAVE_NUMBER, 0.0)
+    k = np.minimum(np.sqrt(beyond / bending), MAX_WAVE_NUMBER) if bending > 0 else shortest
     order = np.argsort(-k)
     moved = np.cumsum(np.nan_to_num(travel)[order])
     return float(np.max(k[order], where=moved * k[order] >= 2 * np.pi, initial=0.0))

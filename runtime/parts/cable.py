@@ -244,6 +244,9 @@ class Cable(DrawnCable, CableFields):
     def _check_beam_section(self, section: Section) -> None:
         """Raise ValueError where the law of a beam needs other data of the section than those given."""
         given, is_general = section.given_beside_shape, isinstance(section, GeneralSection)
+        if not min(section.moments()[1:3]) > 0:
+            raise ValueError("has a section without second moments, which beams need", "give them, or take "
+                             + others(self.dim, cable=True))
         if self.traits.kind == "structural":
             missing = ({"shear_factors", "torsion_constant"} if self.dim == 3 else {"shear_factors"}) - given
             if is_general and missing:

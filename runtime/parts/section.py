@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 from ..errors import SceneError
 from .part import Family, Part
 from .schemas import checked, list_schema
-from .validation import positive, show, vector
+from .validation import not_negative, positive, show, vector
 
 Length = Annotated[float, positive("m")]
 MIN_WALL = 1e-12
@@ -196,7 +196,7 @@ class GeneralSection(Section):
     torsion_constant: m⁴, for beams
     shear_factors: (ky, kz), for beams
     area: m²
-    second_moment_about_z: ∫y²dA, m⁴
+    second_moment_about_z: ∫y²dA, m⁴; 0 of a cable without bending stiffness, as a chain
     second_moment_about_y: ∫z²dA, m⁴; equal to the other one if only one is given
     rotary_moment_about_z, rotary_moment_about_y: m⁴, for beams whose mass is elsewhere than their stiffness: the
         density times it is the rotary inertia a length about that axis, kg m; equal if only one is given, the second
@@ -205,8 +205,8 @@ class GeneralSection(Section):
 
     shape = "general"
     area_: Annotated[float, positive("m²")] = Field(alias="area")
-    about_z: Annotated[float, positive("m⁴")] = Field(alias="second_moment_about_z")
-    about_y: Annotated[float, positive("m⁴")] = Field(default_factory=lambda data: data["about_z"],
+    about_z: Annotated[float, not_negative("m⁴")] = Field(alias="second_moment_about_z")
+    about_y: Annotated[float, not_negative("m⁴")] = Field(default_factory=lambda data: data["about_z"],
                                                       alias="second_moment_about_y")
     rotary_about_z: Annotated[float, positive("m⁴")] | None = Field(None, alias="rotary_moment_about_z")
     rotary_about_y: Annotated[float, positive("m⁴")] | None = Field(None, alias="rotary_moment_about_y")

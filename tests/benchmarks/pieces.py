@@ -107,10 +107,13 @@ SPAN = 80.0, -10.0
 
 
 def two_ropes(element: str, elements: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the force of two ropes in line on their support, along and up, and that of the catenary by pieces, N."""
+    """Return the force of two ropes in line on their support, along and up, and that of the catenary by pieces, N.
+
+    They have no bending stiffness.
+    """
     area, weight = 1e-4, 9.81
     scene = fu.Scene(gravity=(0, -weight, 0))
-    section = fu.GeneralSection(area=area, second_moment_about_z=1e-16)
+    section = fu.GeneralSection(area=area, second_moment_about_z=0.0)
     scene.cable("ropes", start=(0, 0, 0), end=(*SPAN, 0), element=element, strain="engineering", rest="straight",
                 membrane="reduced", pieces=[
                     fu.Piece(length=length, section=section, elements=elements, material=fu.Material(

@@ -64,7 +64,9 @@ def unresolved(cable: Cable, force: np.ndarray, element: np.ndarray) -> np.ndarr
     """
     bending = 12 * of_cuts(cable, element, lambda piece: piece.material.youngs_modulus * float(
         max(piece.section.moments()[1 : cable.dim])))
-    x = np.linalg.norm(force, axis=-1) * np.square(cable.mesh.each_length(element)) / bending
+    tension = np.linalg.norm(force, axis=-1) * np.square(cable.mesh.each_length(element))
+    x = np.divide(tension, bending, out=np.full(np.shape(tension), 1e100), where=np.broadcast_to(
+        np.greater(bending, 0.0), np.shape(tension)))  # without bending stiffness it is all of it
     return np.asarray(x**2 / (1 + x**2))
 
 

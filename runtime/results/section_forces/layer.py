@@ -50,6 +50,8 @@ def of_joint(s: np.ndarray, before: np.ndarray, after: np.ndarray, EI: tuple[flo
     direction, whose change on each side is a/sqrt(E I N): a sqrt(E I) on the other side has the opposite sign.
     """
     roots = np.sqrt(EI)
+    if not roots.sum() > 0:
+        return []
     jump, none = 2 * (after - before) / roots.sum(), np.zeros(len(s))
     return [Kink(s, np.zeros_like(before), none, jump * root, side) for root, side in zip(roots, (-1, 1), strict=True)]
 
