@@ -98,6 +98,18 @@ def test_a_slide_passes_a_joint(element, integrator):
     assert run["A.velocity"][-1, 0] == pytest.approx(20, rel=2e-3)
 
 
+def test_the_energy_scheme_takes_pieces_that_share_slopes():
+    """Others it refuses: their joints have no discrete gradient."""
+    heavy = SOFT.remade({"density": 2 * SOFT.density})
+    run = taut("cable8p", materials=(SOFT, heavy), elements=4).run(duration=0.05, step=1e-3, output_step=0.01,
+                                                                    integrator="energy")
+    energy = sum(np.asarray(run[f"energy.{name}"]) for name in ("kinetic", "elastic", "potential"))
+    assert np.ptp(energy) < 1e-10 * np.abs(energy).max()
+    with refused('cable "w": integrator "energy" has no discrete gradient of the joint of its pieces; give them one '
+                 "axial stiffness, or take another integrator"):
+        taut("cable8p").run(duration=0.01, step=1e-3, output_step=0.01, integrator="energy")
+
+
 def test_damping_by_pieces():
     """The second piece alone is damped: the same dissipation as of two tied cables."""
     damped = SOFT.remade({"damping_time": 1e-3, "mass_damping": 2.0})
