@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 else:
 
     def dataclass(kind: type | None = None, /, **options: Any) -> Any:
-        """Return the class as `dataclasses.dataclass` would, once it has an object; `fields` finds none before."""
+        """Return the class as `dataclasses.dataclass` would, once it has an object or is asked for its fields."""
         if kind is None:
             return partial(dataclass, **options)
 
@@ -35,9 +35,20 @@ else:
             _complete(kind)
             self.__dict__.update(state)
 
-        kind.__init__, kind.__setstate__ = __init__, __setstate__
+        kind.__init__, kind.__setstate__, kind.__dataclass_fields__ = __init__, __setstate__, _Fields(kind)
         _WAITING[kind] = options
         return kind
+
+
+class _Fields:
+    """Stands for the fields of a class until they are asked for, as by a dataclass that extends it."""
+
+    def __init__(self, kind: type):
+        self.kind = kind
+
+    def __get__(self, instance: object, owner: type | None = None) -> dict[str, Any]:
+        _complete(self.kind)
+        return dict(self.kind.__dataclass_fields__)  # type: ignore[attr-defined]
 
 
 def _complete(kind: type) -> None:
