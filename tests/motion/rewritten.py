@@ -16,12 +16,14 @@ Powers = tuple[float, float, float]
 """Of length, mass and time."""
 NUMBER = (0.0, 0.0, 0.0)
 BASE: dict[str, Powers] = {"m": (1, 0, 0), "kg": (0, 1, 0), "s": (0, 0, 1), "N": (1, 1, -2), "Pa": (-1, 1, -2),
-                           "Hz": (0, 0, -1), "rad": NUMBER, "1": NUMBER}
+                           "Hz": (0, 0, -1), "K": NUMBER, "rad": NUMBER, "1": NUMBER}
 RAISED = {"²": 2, "³": 3, "⁴": 4}
 SAID = re.compile(r"\bin ([^ ,.]+(?: [^ ,.]+)?)$")
 """A unit at the end of a description in the schema."""
 DRIVES = {("motion", "displacement"): "m", ("joint", "distance"): "m", ("slide", "drive"): "m",
-          ("slide", "velocity"): "m/s", ("rope", "velocity"): "rad/s", ("rope", "torque"): "N m"}
+          ("slide", "velocity"): "m/s", ("force", "s"): "m", ("cable", "rest_length"): "m",
+          ("spring", "length"): "m", ("spring", "stiffness"): "N/m", ("rope", "velocity"): "rad/s",
+          ("rope", "torque"): "N m"}
 """Units of signals, also of items of a part, which the schema does not know."""
 PER_LENGTH = "contact", "crossing"
 """Parts whose stiffness has a unit of its exponent, and of what touches."""

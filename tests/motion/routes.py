@@ -17,6 +17,7 @@ from funicular.parts.drag import Drag
 from funicular.parts.event import Event
 from funicular.parts.joint import Joint
 from funicular.parts.part import Part
+from funicular.parts.signal import Signal
 from rewritten import in_units
 from turned_scenes import turned_scene
 
@@ -135,9 +136,10 @@ def in_other_units(length: float, mass: float, time: float) -> Maker:
 
 def reversed_cables(scene: fu.Scene) -> Route | None:
     """Return the route with reversed cables; none for a scene with parts that have a direction along them: motors,
-    polars.
+    forces that move, polars.
     """
-    driven = any(slide.drive is not None or slide.velocity is not None for slide in scene.slides.values())
+    driven = (any(slide.drive is not None or slide.velocity is not None for slide in scene.slides.values())
+              or any(isinstance(getattr(load, "s", None), Signal) for load in scene.loads.values()))
     if not scene.cables or driven or any(drag.polar is not None for drag in scene.drags.values()):
         return None
     return Route(scene.with_parts(_from_the_end(part.as_made(), scene) for part in scene.parts()),
