@@ -91,7 +91,7 @@ def test_a_section_by_its_constants():
 
 @pytest.mark.parametrize(("changes", "complaint"), [
     ({"area": 0}, "area must be positive, got 0 m²"),
-    ({"second_moment_about_z": -1}, "second_moment_about_z must be positive, got -1 m⁴"),
+    ({"second_moment_about_z": -1}, "second_moment_about_z must not be negative, got -1 m⁴"),
     ({"second_moment_about_y": math.nan}, "second_moment_about_y must be finite, got nan m⁴"),
     ({"torsion_constant": 0}, "torsion_constant must be positive, got 0 m⁴"),
     ({"torsion_constant": 7},
