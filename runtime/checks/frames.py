@@ -14,6 +14,9 @@ from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
 from .rope_line import rope_line
 
+TANGENT_LAST = np.eye(3)[:, [1, 2, 0]]
+"""Axes of a joint in the frame of a cable: z along the tangent, x along the height, y along the width."""
+
 
 class JointAxes(NamedTuple):
     """(3, 3) each: the axes of a joint as columns, in the frames of its two ends; equal in the ground's at the start.
@@ -109,5 +112,4 @@ def slide_axes(scene: SceneData, slide: Slide) -> JointAxes:
     `cable_frame` with the slide's up, at every s; with roll "free" the rotation about z is free.
     """
     frame = _frame_along(scene, slide)
-    order = np.eye(3)[:, [1, 2, 0]]
-    return JointAxes(order, end_frame(scene, slide.rider).T @ frame @ order)
+    return JointAxes(TANGENT_LAST, end_frame(scene, slide.rider).T @ frame @ TANGENT_LAST)

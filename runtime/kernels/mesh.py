@@ -66,17 +66,12 @@ class Mesh:
     @cached_property
     def first(self) -> Any:
         """Return the index, of an array of nodes, of the first nodes of the elements."""
-        return np.delete(np.arange(self.n_nodes), [*self._lasts, self.n_nodes - 1]) if self.doubled else slice(0, -1)
+        return self.first_node(np.arange(self.n_elements)) if self.doubled else slice(0, -1)
 
     @cached_property
     def last(self) -> Any:
         """Return the index, of an array of nodes, of the second nodes of the elements."""
         return self.first + 1 if self.doubled else slice(1, None)
-
-    @property
-    def _lasts(self) -> list[int]:
-        """Return the last nodes of elements before a doubled node."""
-        return [element + k for k, element in enumerate(self.doubled)]
 
     def first_node(self, element: ArrayLike) -> np.ndarray:
         """Return the numbers (...) of the first nodes of elements (...)."""

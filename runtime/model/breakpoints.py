@@ -69,7 +69,7 @@ def _of_moving_loads(model: Model, duration: float, nodes: bool) -> list[tuple[f
         if load.presence >= 0:
             found += [(float(time), ACCELERATION) for time in model.signals[load.presence].breaks[1:-1]]
         if load.place >= 0 and nodes:
-            levels = model.cables[load.on.cable].mesh.node_s[1:-1] - load.x
+            levels = model.cables[load.on.cable].mesh.boundaries[1:-1] - load.x
             found += [(float(time), HIGHER) for time in model.signals[load.place].times_at(levels, duration)]
     return found
 

@@ -33,7 +33,7 @@ class CableArrays:
         cable, mesh = self.cable, self.cable.mesh
         vectors = cable.kind_of_element.nodal_vectors
         pieces = tuple(CablePiece(piece.end, piece.material.damping_time, piece.material.mass_damping,
-                                  len([at for at in mesh.doubled if at <= piece.first]))
+                                  int(mesh.first_node(piece.first)) - piece.first)
                        for piece in cable.uniform_pieces)
         return CableModel(cable.name, cable.element, cable.kernel_law, mesh, first, pieces, self._mass, self._constants,
                           (mesh.n_nodes, len(vectors), cable.dim), vectors, cable.library)

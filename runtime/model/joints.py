@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from ..base.deferred import dataclass
-from ..checks.frames import has_section, joint_axes, slide_axes
+from ..checks.frames import TANGENT_LAST, has_section, joint_axes, slide_axes
 from ..kernels.libraries import kernels_of
 from ..parts.cable import Cable
 from ..parts.joint import DRIVEN, Joint
@@ -75,8 +75,7 @@ def joint_models(builder: ModelBuilder) -> Iterator[JointModel]:
 
 def _joint_of_tangents(builder: ModelBuilder, cable: Cable, element: int) -> JointModel:
     """Return the joint that keeps the tangents of two pieces parallel, the second of which begins with this element."""
-    tangent_last = np.eye(3)[:, [1, 2, 0]]
-    ends = [builder.on_element(cable, own, at_end, tangent_last) for own, at_end in ((element - 1, 1), (element, 0))]
+    ends = [builder.on_element(cable, own, at_end, TANGENT_LAST) for own, at_end in ((element - 1, 1), (element, 0))]
     model = _model(cable.name, "aligned" if cable.dim == 3 else "locked", cable.dim, ends, -1, 0.0)
     model.joins_pieces = True
     return model

@@ -36,13 +36,10 @@ from .signals import Signals
 from .span_coordinates import AlongSpan, SpanCoordinates
 from .unknowns import Node
 
-ARC_LENGTH_ORDERS = {"r_x": 1, "r_xx": 2}
-"""Order of the derivative by the arc-length of nodal vectors."""
-
 
 def orders_of(vectors: Sequence[str]) -> np.ndarray:
     """Return (vectors,): the orders of the derivatives by the arc-length that nodal vectors are."""
-    return np.array([ARC_LENGTH_ORDERS.get(name, 0) for name in vectors])
+    return np.array([name.count("x") for name in vectors])
 
 
 def per_grown(vectors: Sequence[str], growth: np.ndarray) -> np.ndarray:

@@ -172,7 +172,7 @@ class Cable(DrawnCable, CableFields):
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Return a copy with other values of fields; its shape follows from them."""
         made = super().model_copy(update=update, deep=deep)
-        for name in ("_shape", "uniform_pieces"):
+        for name in ("_shape", "uniform_pieces", "_mesh_of_pieces"):
             vars(made).pop(name, None)
         return made
 

@@ -4,7 +4,7 @@ import os
 from collections.abc import Callable
 from functools import cached_property
 from itertools import accumulate, pairwise
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo
@@ -23,6 +23,8 @@ from .section import AnySection, Section, outer_radius_of
 from .signal import Signal, varying
 from .thermal import TEMPERATURE
 from .validation import Count, Name, Points, Vector, one_of, positive, shown, xyz
+
+T = TypeVar("T")
 
 
 def library_directory(value: Any) -> str | None:
@@ -126,24 +128,19 @@ class CableFields(Part):
     @property
     def section(self) -> Section:
         """Return its section. Raises SceneError where its pieces have several."""
-        if self.given_section is not None:
-            return self.given_section
-        sections = [piece.section for piece in self.uniform_pieces]
-        if any(each != sections[0] for each in sections):
-            raise SceneError(self.where, "has pieces of several sections, where one is needed",
-                             "give one section to all pieces, or a cable to each piece and join them by ties")
-        return sections[0]
+        return self.given_section or self._one([piece.section for piece in self.uniform_pieces], "section")
 
     @property
     def material(self) -> Material:
         """Return its material. Raises SceneError where its pieces have several."""
-        if self.given_material is not None:
-            return self.given_material
-        materials = [piece.material for piece in self.uniform_pieces]
-        if any(each != materials[0] for each in materials):
-            raise SceneError(self.where, "has pieces of several materials, where one is needed",
-                             "give one material to all pieces, or a cable to each piece and join them by ties")
-        return materials[0]
+        return self.given_material or self._one([piece.material for piece in self.uniform_pieces], "material")
+
+    def _one(self, each: list[T], what: str) -> T:
+        """Return what all pieces have. Raises SceneError."""
+        if any(other != each[0] for other in each):
+            raise SceneError(self.where, f"has pieces of several {what}s, where one is needed",
+                             f"give one {what} to all pieces, or a cable to each piece and join them by ties")
+        return each[0]
 
     def of_elements(self, of_piece: Callable[[UniformPiece], float]) -> np.ndarray:
         """Return (elements,): a number of the piece of each element."""

@@ -8,7 +8,6 @@ from typing import Annotated, Any
 import numpy as np
 
 from ..kernels.mesh import Mesh
-from .piece import Piece, boundaries
 from .schemas import checked, list_schema
 from .validation import LENGTH_TOLERANCE, MAX_COUNT, items, show, shown, vector
 
@@ -72,12 +71,6 @@ def mesh_of(nodes: tuple[float, ...], length: float) -> Mesh:
     if np.abs(node_s - length * np.arange(n + 1) / n).max() <= EVEN_TOLERANCE * length:
         return Mesh.even(length / n, n)
     return Mesh.of_nodes(node_s)
-
-
-@lru_cache(maxsize=32)
-def mesh_of_pieces(pieces: tuple[Piece, ...], doubled: tuple[int, ...]) -> Mesh:
-    """Return the mesh of the elements of pieces; doubled: see `Mesh`."""
-    return Mesh.of_nodes(np.array(boundaries(pieces)), doubled)
 
 
 def refined(nodes: tuple[float, ...], elements: int) -> tuple[float, ...]:

@@ -16,7 +16,7 @@ from ..kernels.mesh import Mesh
 from . import cable_drawing, cable_mesh, curves
 from .cable_fields import CableFields
 from .driven import GROWTH, Driven
-from .piece import UniformPiece
+from .piece import UniformPiece, boundaries
 from .plane import Plane
 from .section_stiffness import kernel_law, section_stiffness
 from .signal import Signal, at_start
@@ -102,10 +102,15 @@ class DrawnCable(Fields):
     def mesh(self) -> Mesh:
         """Return its mesh. Raises SceneError where its elements are still to be chosen."""
         if self.pieces is not None:
-            return cable_mesh.mesh_of_pieces(self.pieces, self.doubled)
+            return self._mesh_of_pieces
         if self.nodes is None:
             return cable_mesh.even_mesh(self.length / self.elements, self.elements)
         return cable_mesh.mesh_of(self.nodes, self.length)
+
+    @cached_property
+    def _mesh_of_pieces(self) -> Mesh:
+        assert self.pieces is not None, f"{self.where} has no pieces"
+        return Mesh.of_nodes(boundaries(self.pieces), self.doubled)
 
     def lengths_by_piece(self) -> Iterator[tuple[UniformPiece, np.ndarray]]:
         """Yield its pieces with the lengths of their elements, in m: (1,) of equal elements of one piece."""
@@ -116,9 +121,9 @@ class DrawnCable(Fields):
     @property
     def mass(self) -> float:
         """Return its mass in kg."""
-        return sum(float(lengths.sum() if len(lengths) == piece.end - piece.first else self.length)
-                   * piece.material.density * float(piece.section.mass_moments()[0])
-                   for piece, lengths in self.lengths_by_piece())
+        lengths = [self.length] if self.pieces is None else [piece.length for piece in self.pieces]
+        return sum(length * piece.material.density * float(piece.section.mass_moments()[0])
+                   for length, piece in zip(lengths, self.uniform_pieces, strict=True))
 
     def piece_at(self, s: float) -> UniformPiece:
         """Return the piece at arc-length ``s`` in m; between two pieces the one that begins there."""

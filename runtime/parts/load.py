@@ -1,6 +1,6 @@
 """Loads: forces, distributed forces and moments, each a value times a signal of time."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, Self
 
 import numpy as np
@@ -84,6 +84,15 @@ class Force(Load):
     def axles(self) -> list[tuple[float, float]]:
         """Return the offset in m and the share of each force."""
         return list(zip(self.offsets, self.shares or (1.0,) * len(self.offsets), strict=True))
+
+    def axles_at(self, time: np.ndarray, length: float) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """Yield of each force that moves along a cable of a length in m its arc-lengths (T,) at times in s, within the
+        cable, and its shares (T,), zero off the cable.
+        """
+        assert isinstance(self.s, Signal), f"{self.where} does not move"
+        for offset, share in self.axles:
+            at = self.s.value(time) + offset
+            yield np.clip(at, 0.0, length), share * ((at >= 0) & (at <= length))
 
     @model_validator(mode="after")
     def _moves_as_a_train(self) -> "Force":

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
-from pydantic import AfterValidator, BeforeValidator, Field
+from pydantic import BeforeValidator, Field
 
 from .material import Material
 from .part import Part
@@ -47,16 +47,15 @@ def _listed(value: Any) -> list[Any]:
     return given
 
 
-Pieces = Annotated[tuple[Piece, ...], Field(json_schema_extra={"minItems": 1}), BeforeValidator(_listed),
-                   AfterValidator(tuple)]
+Pieces = Annotated[tuple[Piece, ...], Field(json_schema_extra={"minItems": 1}), BeforeValidator(_listed)]
 
 
-def boundaries(pieces: Iterable[Piece]) -> tuple[float, ...]:
-    """Return the arc-lengths of the ends of the elements of pieces, in m."""
+def boundaries(pieces: Iterable[Piece]) -> np.ndarray:
+    """Return (elements + 1,): the arc-lengths of the ends of the elements of pieces, in m."""
     found = np.zeros(1)
     for piece in pieces:
         found = np.append(found, found[-1] + piece.length * np.arange(1, piece.elements + 1) / piece.elements)
-    return tuple(found.tolist())
+    return found
 
 
 def with_elements(pieces: tuple[Piece, ...], elements: int) -> tuple[Piece, ...]:

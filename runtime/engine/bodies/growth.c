@@ -154,17 +154,20 @@ double fu_grown_energy(const fu_cable *cable, int element, const double *q)
     return energy_with(cable, element, fu_growth(cable, element, q), q);
 }
 
-static double mean_growth(const fu_cable *cable, int element, const double *q, const double *q_next)
+/* Computes an element at both ends of a step with the mean factor, which it returns. */
+static double grow_over(const fu_cable *cable, int element, const double *q, const double *q_next, fu_grown *now,
+                        fu_grown *next)
 {
-    return 0.5 * (fu_growth(cable, element, q) + fu_growth(cable, element, q_next));
+    const double g = 0.5 * (fu_growth(cable, element, q) + fu_growth(cable, element, q_next));
+    fu_grow(cable, element, g, vectors_of(cable, element, q), now);
+    fu_grow(cable, element, g, vectors_of(cable, element, q_next), next);
+    return g;
 }
 
 void fu_grown_discrete_force(const fu_cable *cable, int element, const double *q, const double *q_next, double *f)
 {
-    const double g = mean_growth(cable, element, q, q_next);
     fu_grown now, next;
-    fu_grow(cable, element, g, vectors_of(cable, element, q), &now);
-    fu_grow(cable, element, g, vectors_of(cable, element, q_next), &next);
+    const double g = grow_over(cable, element, q, q_next, &now, &next);
     cable->law->discrete_force(now.l, now.e, next.e, fu_element_constants(cable, element), f);
     fu_forces_on_given(cable, g, f);
 }
@@ -172,10 +175,8 @@ void fu_grown_discrete_force(const fu_cable *cable, int element, const double *q
 /* Computes the Newton matrix of these forces over nodal vectors beyond the tangent half-way. */
 void fu_grown_step_stiffness(const fu_cable *cable, int element, const double *q, const double *q_next, double *k)
 {
-    const double g = mean_growth(cable, element, q, q_next);
     fu_grown now, next;
-    fu_grow(cable, element, g, vectors_of(cable, element, q), &now);
-    fu_grow(cable, element, g, vectors_of(cable, element, q_next), &next);
+    const double g = grow_over(cable, element, q, q_next, &now, &next);
     cable->law->step_stiffness(now.l, now.e, next.e, fu_element_constants(cable, element), k);
     matrix_of_given(cable, g, cable->coordinates / cable->kernel->dim, cable->kernel->dim, k);
 }

@@ -33,7 +33,7 @@ int fu_surface_event_functions(const fu_drag *drag, int first, fu_event_function
 /* Computes the lowest and the highest position, m: of a cable or a span among its nodes. */
 static void heights_of(const fu_model *model, const fu_drag *drag, const fu_state *state, double *low, double *high)
 {
-    const int nodes = fu_drag_nodes(model, drag);
+    const int nodes = fu_drag_nodes(drag);
     if (!nodes) {
         fu_attachment_state end;
         fu_attachment_at(model, &drag->attachments[0], state, 0.0, FU_POINT, &end);

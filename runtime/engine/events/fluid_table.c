@@ -24,7 +24,7 @@ static double margin_at(const fu_model *model, const fu_drag *drag, double t, co
 static double margin(const fu_model *model, const fu_drag *drag, const fu_state *state)
 {
     double least = 1.0;
-    const int nodes = fu_drag_nodes(model, drag);
+    const int nodes = fu_drag_nodes(drag);
     for (int k = 0; k < nodes; ++k)
         least = fmin(least, margin_at(model, drag, state->t, fu_drag_node(model, drag, k, state->q)));
     if (!nodes) {

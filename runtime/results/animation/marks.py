@@ -233,7 +233,7 @@ def _loads(frames: Frames, refs: Frames, longest: float) -> Iterator[Segment]:
     for name, load in frames.scene.loads.items():
         scale = _scale(frames, load)
         if isinstance(load, Force) and isinstance(load.s, Signal):
-            forces += _moving_arrows(frames, refs, name, load, load.s)
+            forces += _moving_arrows(frames, refs, name, load)
         elif isinstance(load, Force):
             end = _loaded(frames, load)
             forces.append(_arrow(frames, refs, name, end, scale * _components(frames, end, load.value, load.follower)))
@@ -249,19 +249,16 @@ def _loads(frames: Frames, refs: Frames, longest: float) -> Iterator[Segment]:
     yield from _arrows(longest, distributed)
 
 
-def _moving_arrows(frames: Frames, refs: Frames, name: str, load: Force, s: Signal) -> Iterator[_Arrow]:
+def _moving_arrows(frames: Frames, refs: Frames, name: str, load: Force) -> Iterator[_Arrow]:
     """Yield the axles of a load that moves along a cable, without length off its ends."""
     cable, vectors = frames.scene.cables[load.on], f"{load.on}.nodal_vectors"
     nodal = frames.value(vectors)
-    for offset, share in load.axles:
-        place_of = s.value(_load_time(frames)) + offset
-        here = (place_of >= 0) & (place_of <= cable.length)
-        at = np.clip(place_of, 0.0, cable.length)
+    for at, share in load.axles_at(_load_time(frames), cable.length):
         value = np.array([load.value])
         if load.follower:
             value = _along_section(cable, load.value, partial(moving, cable, at, nodal))
         yield _Arrow(name, moving(cable, at, nodal), moving(cable, at, refs.value(vectors)),
-                     share * here[:, None] * _scale(frames, load) * value)
+                     share[:, None] * _scale(frames, load) * value)
 
 
 def _ends(frames: Frames, name: str) -> tuple[float, float]:

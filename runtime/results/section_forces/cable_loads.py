@@ -121,7 +121,7 @@ class CableLoads:
                 continue
             cable = self.model.cables[self.number[on]]
             if isinstance(load, Force) and isinstance(load.s, Signal):
-                self._moving(load, load.s, self.number[on], scale)
+                self._moving(load, self.number[on], scale)
                 continue
             assert isinstance(load.s, float), f"{load.where} is not complete"
             element, x = cable.mesh.place(load.s)
@@ -132,15 +132,13 @@ class CableLoads:
                 f = self._force(cable, element, x, np.array(load.value), load.follower)
             self._add(self.number[on], element, x, scale[:, None, None] * f)
 
-    def _moving(self, load: Force, s: Signal, number: int, scale: np.ndarray) -> None:
+    def _moving(self, load: Force, number: int, scale: np.ndarray) -> None:
         """Add the axles of a load that moves along a cable."""
         cable, value = self.model.cables[number], np.array(load.value)
-        for offset, share in load.axles:
-            at = s.value(self.at.time) + offset
-            factor = share * scale * ((at >= 0) & (at <= cable.mesh.total))
-            element, x = cable.mesh.place(np.clip(at, 0.0, cable.mesh.total))
+        for at, share in load.axles_at(self.at.time, cable.mesh.total):
+            element, x = cable.mesh.place(at)
             f = self._force(cable, element, x, value, load.follower)
-            self._add(number, element, x, factor[:, None, None] * f)
+            self._add(number, element, x, (share * scale)[:, None, None] * f)
 
     def _turning(self, cable: CableModel, kernel: str, element: ArrayLike, x: ArrayLike, c: np.ndarray) -> np.ndarray:
         """Return the generalised force (T, vectors, dim) of a load that turns with the section."""

@@ -18,19 +18,12 @@
 #define MAX_CORRECTION 2.0    /* elements: largest correction */
 #define SAMPLES_PER_ELEMENT 4 /* of an element, for a new search */
 
-/* Returns the element of a cable that holds s. */
-static int element_at(const fu_cable *cable, double s)
-{
-    if (cable->nodes) return fu_last_reached(cable->nodes, 0, cable->n_elements, s);
-    return (int)fmin(fmax(s / cable->length, 0.0), cable->n_elements - 1.0);
-}
-
 static void point_of_cable(const fu_cable *cable, const double *q, const double *v, double s, fu_line_point *out)
 {
     const int dim = cable->kernel->dim, n = cable->coordinates / dim;
     const double within = fmin(fmax(s, 0.0), fu_cable_length(cable)), beyond = s - within;
     double every[9 * FU_MAX_COORDINATES];
-    out->element = element_at(cable, within);
+    out->element = fu_cable_element_at(cable, within);
     const double length = fu_element_length(cable, out->element), start = fu_cable_start(cable, out->element);
     const int first = fu_element_entry(cable, out->element);
     cable->kernel->on_axis(length, within - start, out->N, out->N_x);

@@ -188,7 +188,7 @@ typedef void fu_drag_visitor(const fu_model *model, const fu_drag *drag, const f
 /* couplings/fluid/quadrature.c */
 fu_quadrature_point fu_drag_point(const fu_drag *drag, int n, int element, int point);
 /* Return the number of nodes of the cable or the span, and the place of one. */
-int fu_drag_nodes(const fu_model *model, const fu_drag *drag);
+int fu_drag_nodes(const fu_drag *drag);
 const double *fu_drag_node(const fu_model *model, const fu_drag *drag, int k, const double *q);
 
 /* couplings/fluid/point_block.c: the shape functions of a block of points from the k-th on; their motion by the

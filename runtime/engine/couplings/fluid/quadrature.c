@@ -10,9 +10,8 @@ fu_quadrature_point fu_drag_point(const fu_drag *drag, int n, int element, int p
                                  fu_drag_on_section(drag) ? drag->N_chord + k * n : 0};
 }
 
-int fu_drag_nodes(const fu_model *model, const fu_drag *drag)
+int fu_drag_nodes(const fu_drag *drag)
 {
-    (void)model;
     return drag->cable >= 0 ? drag->n_elements + 1 : drag->on.kernel ? drag->on.n_elements + 1 : 0;
 }
 
