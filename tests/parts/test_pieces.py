@@ -98,6 +98,21 @@ def test_a_slide_passes_a_joint(element, integrator):
     assert run["A.velocity"][-1, 0] == pytest.approx(20, rel=2e-3)
 
 
+@pytest.mark.parametrize("integrator", ["genalpha", "radau", "explicit"])
+def test_a_joint_passes_the_direction_up(integrator):
+    """A cable in space of unlike pieces swings through the vertical, whatever `up` its axes were drawn with."""
+    def tip(up):
+        scene = fu.Scene(gravity=(0, -9.81, 0))
+        material = [fu.Material(youngs_modulus=E, poisson_ratio=0, density=1000) for E in (1e6, 2e6)]
+        rope = scene.cable("rope", start=(0, 0, 0), end=(1, 0, 0), element="cable12", up=up, pieces=[
+            fu.Piece(length=0.5, section=fu.Circle(radius=0.01), material=each, elements=2) for each in material])
+        scene.pin(rope, s=0.0)
+        positions = scene.run(duration=1.5, tol=1e-5, output_step=0.05, integrator=integrator)["rope.nodal_vectors"]
+        assert positions[:, -1, 0, 0].min() < -0.5 and positions[-1, -1, 0, 0] > 0.4  # there and back
+        return positions[:, -1, 0]
+    np.testing.assert_allclose(tip((0, 1, 0)), tip((0, 0, 1)), atol=5e-5)
+
+
 def test_the_energy_scheme_takes_pieces_that_share_slopes():
     """Others it refuses: their joints have no discrete gradient."""
     heavy = SOFT.remade({"density": 2 * SOFT.density})
