@@ -77,10 +77,11 @@ def check_height(points: Points, up: Vector, is_round: bool) -> None:
 def check_elements(shape: Line | Spline, nodes: np.ndarray) -> None:
     """Raise ValueError(cause, remedy) where an element is too long to follow the direction of the curve.
 
-    nodes: (n,) drawn arc-lengths in m.
+    nodes: (n,) drawn arc-lengths in m, rising; twice where pieces of unlike stiffness join.
     """
     if shape.straight:
         return
+    nodes = np.unique(nodes)
     xi, length = np.linspace(0, 1, 17)[:, None, None], np.diff(nodes)[:, None]
     r, t = shape.point(nodes), shape.tangent(nodes)
     slope = (6 * xi * (1 - xi) * np.diff(r, axis=0) / length

@@ -197,6 +197,10 @@ PIECE = fu.Piece(length=5, section=SECTION, material=SOFT, elements=4)
     ({"pieces": [{"length": -1, "section": SECTION, "material": SOFT, "elements": 1}]}, "length must be positive"),
     ({"points": [(0, 0, 0), (1, 1, 0), (2, 0, 0)], "start": None, "end": None, "pieces": [PIECE]},
      "is drawn curved and has pieces, whose stress-free shape is straight"),
+    ({"curve": lambda u: (np.cos(6 * u), np.sin(6 * u), 0), "start": None, "end": None, "rest": "straight",
+      "up": (0, 0, 1), "pieces": [PIECE.remade({"material": material, "elements": 1, "length": length})
+                                  for material, length in ((SOFT, 0.3), (STIFF, 5.7))]},
+     "element 2 of 2 cannot follow the curve"),
     ({}, "section is missing"),
 ])
 def test_bad_pieces_are_refused(entries, message):
