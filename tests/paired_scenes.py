@@ -1,5 +1,5 @@
-"""Small scenes from one level of each of eleven factors: a cable, its law, shape, section and support, its rider, a
-joint, a rope, a load, a fluid, a contact, an event.
+"""Small scenes from one level of each of several factors: a cable, its law, shape, pieces, growth, section and support,
+its rider, a joint, a rope, a load, a fluid, a contact, an event.
 
 Levels come from the lists of the project. A kind in a list without an entry in a table here fails
 `test_pairs_of_features.py`; with an entry, it is combined with everything else.
@@ -47,6 +47,12 @@ DRAWN = {"straight": {}, "taut": {"rest_length": 0.995}, "hanging": {"shape": "h
          "curved": {"points": [(0, 0, 0), (0.5, -0.1, 0), (1, 0, 0)]},
          "bent": {"points": [(0, 0, 0), (0.5, -0.1, 0), (1, 0, 0)], "rest": "straight"},
          "uneven": {"nodes": [0, 0.2, 0.5, 1.0]}}
+PIECES = {"none": (), "equal": (1.0, 1.0), "of two materials": (1.0, 2.0)}
+"""Young's moduli of the pieces of the wire, over that of its material; none: a wire without pieces."""
+GROWTH: dict[str, dict] = {
+    "none": {}, "temperature": {"temperature": -5.0},
+    "temperature by a signal": {"temperature": fu.Ramp(start=0, end=TIME, after=-5.0)},
+    "driven length": {"rest_length": fu.Ramp(start=0, end=TIME, before=1.0, after=0.999)}}
 DAMPING = {"none": {}, "damping_time": {"damping_time": 1e-4}, "mass_damping": {"mass_damping": 2.0}}
 STICK = fu.Friction(coefficient=0.3, model="stick")
 
@@ -159,6 +165,7 @@ RIDERS: dict[str, Callable[[Site], object]] = {
     "section": partial(_rides, frame="section"),
     "drive": lambda on: _rides(on, drive=fu.Ramp(start=0, end=TIME, before=on.at(0.4), after=on.at(0.42))),
     "velocity": partial(_rides, velocity=SIGNALS["harmonic"]),
+    "brake by a signal": partial(_rides, friction=fu.Friction(coefficient=0.2, model="stick", scale=SIGNALS["ramp"])),
     "regularised friction": partial(_rides, friction=fu.Friction(coefficient=0.2, viscous=0.1, rolling=0.01)),
     "sticking friction": partial(_rides, friction=STICK),
     "eyelet": lambda on: on.scene.slide(tuple(on.below(0.4, 0)), along="wire", s=on.at(0.4), name="trolley"),
@@ -286,6 +293,11 @@ def _sprung(on: Site, **given) -> None:
     on.scene.spring(("wire", on.at(0.7)), "B", name="spring", **given)
 
 
+def _pushed_when_falling(on: Site) -> None:
+    on.scene.event("falling", quantity="wire.velocity.y", s=on.cable.node_s[1], value=-1e-3)
+    on.scene.force("wire", s=on.at(0.3), value=(0, -20, 0), when="falling")
+
+
 LOADS: dict[str, Callable[[Site], object]] = {
     "none": lambda on: None,
     **{f"force by {form}": lambda on, signal=signal: on.scene.force("wire", s=on.at(0.3), value=(0, -20, 0),
@@ -303,6 +315,10 @@ LOADS: dict[str, Callable[[Site], object]] = {
     "spring that pulls": partial(_sprung, stiffness=50, damping=0.5, length=0.29, tension_only=True),
     "spring with play": partial(_sprung, stiffness=50, length=0.3, free_play=0.01),
     "spring by table": partial(_sprung, length=0.25, table=fu.ForceTable(extension=[0, 0.1], tension=[0, 5])),
+    "spring of driven length": partial(_sprung, stiffness=50, length=fu.Ramp(start=0, end=TIME, before=0.2,
+                                                                             after=0.21)),
+    "spring of driven stiffness": partial(_sprung, length=0.2, stiffness=fu.Ramp(start=0, end=TIME, before=5, after=9)),
+    "force by an event": _pushed_when_falling,
     "spring without length": partial(_sprung, stiffness=5, length=0.0)}
 
 
@@ -407,13 +423,25 @@ def laws() -> dict[str, list[str]]:
 FACTORS: dict[str, list[str]] = {
     "element": ["cable12", *sorted(built_in().keys() - {"cable12"})],
     "law": ["default", *dict.fromkeys(law for of in laws().values() for law in of)],
-    "drawn": [*DRAWN], "section": [*SECTIONS], "damping": [*DAMPING], "support": [*SUPPORTS], "end": [*ENDS],
+    "drawn": [*DRAWN], "pieces": [*PIECES], "growth": [*GROWTH], "section": [*SECTIONS],
+    "damping": [*DAMPING], "support": [*SUPPORTS], "end": [*ENDS],
     "rider": [*RIDERS], "joint": [*JOINED], "rope": [*ROPES], "load": [*LOADS], "fluid": [*FLUIDS],
     "touch": [*TOUCHING], "event": [*EVENTS]}
 """By factor its levels, the first of which is neutral."""
 
 ADDED = {"support": SUPPORTS, "end": ENDS, "rider": RIDERS, "joint": JOINED, "rope": ROPES, "load": LOADS,
          "fluid": FLUIDS, "touch": TOUCHING, "event": EVENTS}
+
+
+def _made_of(section: object, material: fu.Material, row: dict[str, str]) -> dict:
+    """Return the section, material and mesh of the wire, or its pieces."""
+    if ratios := PIECES[row["pieces"]]:
+        modulus = material.youngs_modulus
+        return {"pieces": [fu.Piece(length=length, section=section, elements=elements, material=material.remade(
+            {"youngs_modulus": ratio * modulus})) for length, elements, ratio in zip((0.4, 0.6), (1, 2), ratios,
+                                                                                     strict=True)]}
+    mesh = {} if "nodes" in DRAWN[row["drawn"]] else {"elements": 3}
+    return {"section": section, "material": material} | mesh
 
 
 def build(row: dict[str, str], folder: Path) -> fu.Scene:
@@ -423,11 +451,11 @@ def build(row: dict[str, str], folder: Path) -> fu.Scene:
     if row["section"] == "general" and row["element"].startswith("beam"):
         section = fu.GeneralSection(area=3e-4, second_moment_about_z=8e-9, torsion_constant=1.5e-8,
                                     shear_factors=(0.9, 0.9))
-    material = fu.Material(youngs_modulus=1e7, poisson_ratio=0.0, density=1000, **DAMPING[row["damping"]])
-    shape = DRAWN[row["drawn"]]
+    material = fu.Material(youngs_modulus=1e7, poisson_ratio=0.0, density=1000, thermal_expansion=1e-4,
+                           **DAMPING[row["damping"]])
+    shape = DRAWN[row["drawn"]] | GROWTH[row["growth"]]
     line = shape if "points" in shape else {"start": (0, 0, 0), "end": (1, 0, 0)} | shape
-    mesh = {} if "nodes" in shape else {"elements": 3}
-    wire = scene.cable("wire", **line, **mesh, element=row["element"], section=section, material=material, **law)
+    wire = scene.cable("wire", **line, **_made_of(section, material, row), element=row["element"], **law)
     on = Site(scene, folder, wire, planar=wire.dim == 2)
     for factor, levels in ADDED.items():
         levels[row[factor]](on)
