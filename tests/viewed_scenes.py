@@ -66,3 +66,24 @@ def belt() -> fu.Scene:
                section=fu.Rectangle(height=2e-3, width=0.05), elements=1, length=1.1938052,
                material=fu.Material(youngs_modulus=7.6e7, density=8724.21, poisson_ratio=0.3))
     return scene
+
+
+def riser() -> fu.Scene:
+    """Return a line of two bare pieces and a buoyant one from below the water to its surface, above a bed, with a load
+    that walks along it and grows.
+    """
+    scene = fu.Scene(gravity=(0, -9.81, 0))
+    bare, buoyant = (fu.Material(youngs_modulus=2e8, poisson_ratio=0.3, density=density) for density in (2000, 500))
+    pieces = [fu.Piece(length=length, section=fu.Circle(radius=radius), material=material, elements=elements) for
+              length, radius, material, elements in ((20, 0.1, bare, 14), (12, 0.3, buoyant, 10), (18, 0.1, bare, 12))]
+    scene.cable("riser", start=(0, -20, 0), end=(38, 2, 0), element="cable12", shape="hanging", rest="straight",
+                pieces=pieces)
+    scene.pin("riser", s=0)
+    scene.pin("riser", s=50)
+    scene.fluid("sea", density=1000, surface=0.0)
+    scene.drag("riser", normal=1.2)
+    scene.surface("bed", fu.Plane(point=(0, -25, 0), normal=(0, 1, 0)))
+    scene.contact("riser", "bed", stiffness=1e5, radius=0.1)
+    scene.force("riser", s=fu.Ramp(start=0, end=1.0, before=20, after=40), value=(0, -2e3, 0), name="walk",
+                scale=fu.Ramp(start=0, end=1.0))
+    return scene

@@ -35,7 +35,8 @@ class CableShape:
     ``{"shape": "rectangle", "height": h, "width": w}``, or ``{"shape": "unknown", "size": d}``, the diameter of a
     circle of plausible size. material_s: the arc-length of the undeformed cable at the stations where its material runs
     through them, as of a rope over sheaves; it rises along the stations, and s is that of the scene as drawn.
-    spacing: of marks on the material, by which one sees it run, in m of that arc-length.
+    spacing: of marks on the material, by which one sees it run, in m of that arc-length. make: number of the section
+    and material of a piece among those of its cable.
     """
 
     name: str
@@ -47,6 +48,7 @@ class CableShape:
     quantities: tuple[Quantity, ...] = ()
     material_s: Annotated[np.ndarray | None, "T", "P"] = None  # None: s of all frames
     spacing: float = 0.0
+    make: int | None = None  # None: a cable of one piece
 
 
 @dataclass(frozen=True)
@@ -56,7 +58,8 @@ class BodyShape:
     shape: ``{"kind": "box", "size": [x, y, z]}``, ``{"kind": "sphere", "radius": r}``, ``{"kind": "cylinder",
     "radius": r, "length": l, "axis": [x, y, z]}``, ``{"kind": "wheel", "radius": r, "width": w}`` about z, with one
     wide spoke along x, or ``{"kind": "mesh", "vertices": (V, 3) array, "triangles": (F, 3) array}``, each with
-    ``"offset": [x, y, z]``, its centre in axes of the body.
+    ``"offset": [x, y, z]``, its centre in axes of the body; ``"sheet": "water"`` or
+    ``"ground"``: the surface of a fluid, or a part of an unbounded surface, without thickness.
     """
 
     name: str

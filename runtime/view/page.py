@@ -168,7 +168,7 @@ class _ScenePacker(Packer):
             "position": self.points(cable.position), "reference": self.points(cable.reference),
             "section_y": None if cable.section_y is None else self.fixed(cable.section_y, 1 / TURN_STEPS),
             "material_s": None if cable.material_s is None else self.fixed(cable.material_s, self.step),
-            "spacing": cable.spacing,
+            "spacing": cable.spacing, "make": cable.make,
             "quantities": [{"key": q.key, "label": q.label, "unit": q.unit, "values": self.values(q.values)}
                            for q in cable.quantities],
         }

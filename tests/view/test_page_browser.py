@@ -5,6 +5,7 @@ import html
 import io
 import tempfile
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import funicular as fu
@@ -15,7 +16,7 @@ from browser import PATIENCE, Opened, browser
 from funicular.view.animation import Clip, EventMark, Mark
 from funicular.view.page import write_page
 from matplotlib.image import imread, imsave
-from viewed_scenes import hoist
+from viewed_scenes import hoist, riser
 
 pytestmark = pytest.mark.browser
 
@@ -47,13 +48,18 @@ def files(tmp_path_factory):
         "still": replace(beam, clips=(still,)),
         "point": replace(beam, clips=(Clip("point", np.zeros(1), marks=(Mark("P", "point", np.ones((1, 3))),)),)),
         "loads": replace(beam, time_label="load factor", time_unit=""),
-        "hoist": hoisted, "catenary": fu.load_scene("catenary").animation(),
+        "hoist": hoisted, "riser": riser_run().animation(), "catenary": fu.load_scene("catenary").animation(),
         "events": replace(beam, clips=(replace(beam.clips[0], events=tuple(
             EventMark(0.1 * k, f"event {k}") for k in range(1, 15))),)),
     }
     for name, animation in made.items():
         write_page(animation, folder / f"{name}.html")
     return lambda name: folder / f"{name}.html"
+
+
+@cache
+def riser_run() -> fu.Run:
+    return riser().run(1.0, output_step=0.1, tol=1e-2, progress=False)
 
 
 @pytest.fixture
@@ -313,6 +319,54 @@ def test_heads_of_arrows_are_part_of_them(opened):
     assert np.ptp(rows) > 12  # the pantograph's
     red[:, x - 12:x + 13] = False
     assert red.any(axis=1).sum() <= 4
+
+
+def colours_at(page: Opened, points: list) -> np.ndarray:
+    """Return the colours (n, 3) of the picture in the 3 by 3 pixels around points (n, 3), which stand out most."""
+    page.drawn()
+    picture = image(page)[..., :3]
+    scale = picture.shape[1] / page.page.evaluate(SIZE)[0]
+    found = []
+    for x, y in (np.multiply(scale, page("f.pixel(a)", list(point))).round().astype(int) for point in points):
+        near = picture[y - 1:y + 2, x - 1:x + 2].reshape(-1, 3)
+        found.append(near[np.argmax(np.ptp(near, axis=1))])
+    return np.array(found)
+
+
+def test_pieces_have_colours_of_their_own(opened):
+    """The first and the last are made of the same, the middle one is not."""
+    page = opened("riser", color_scheme="light")
+    page("f.set({quantity: '', reference: false, marks: false, trails: false, grid: false})")
+    page("f.goToFrame(0)")
+    middles = [page("f.cable(a)", f"riser, piece {k}") for k in range(3)]
+    first, middle, last = colours_at(page, [points[len(points) // 3] for points in middles])
+    assert np.abs(first - last).max() < 0.15
+    assert np.abs(first - middle).max() > 0.3
+    assert middle.argmax() == 0, "orange"
+
+
+def test_the_bed_is_seen_and_picked_through_the_water(opened):
+    """From above its sand has a blue tint: water alone is bluer by 0.57."""
+    page = opened("riser", color_scheme="light")
+    page("f.set({reference: false, marks: false, trails: false})")
+    page("f.look('y')")
+    (red, _, blue), = colours_at(page, [(10, 0, 8)])
+    assert 0.03 < blue - red < 0.2
+    assert page("f.pick(...f.pixel([10, 0, 8]))")["name"] == "bed"
+    assert page("f.body('sea').position")[1] == pytest.approx(0, abs=2e-4)
+
+
+def test_arrows_of_a_moving_load_move(opened):
+    page, animation = opened("riser"), riser_run().animation()
+    arrows = [segment for segment in animation.clips[0].segments if segment.name == "walk"]
+    lengths = []
+    for frame in (0, 4, 9):
+        page("f.goToFrame(a)", frame)
+        ends = np.array(page("f.segment('walk')"))
+        np.testing.assert_allclose(ends, [arrows[0].start[frame], arrows[0].end[frame]], atol=2e-4)
+        lengths.append(np.linalg.norm(ends[1] - ends[0]))
+    assert lengths[0] == pytest.approx(0, abs=2e-4)
+    assert lengths[2] > 2 * lengths[1] > 0
 
 
 def test_axis_views_look_along_axes(opened):

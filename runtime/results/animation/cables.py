@@ -10,6 +10,7 @@ import numpy as np
 from ...base.rotations import rotate
 from ...errors import FunicularError
 from ...parts.cable import Cable
+from ...parts.material import Material
 from ...parts.modal_body import ModalBody
 from ...parts.section import Circle, Rectangle, Section, Tube
 from ...view.animation import CableShape, Quantity, taken
@@ -37,10 +38,13 @@ def cable_shapes(frames: Frames, name: str, notes: list[str]) -> Iterator[CableS
                        along(cable, s, frames.reference(f"{name}.nodal_vectors")),
                        tuple(_quantities(frames, name, s, notes)))
     pieces, per_element = cable.uniform_pieces, (len(s) - 1) // cable.elements
+    makes: list[tuple[Section, Material]] = []
     for k, piece in enumerate(pieces):
         own = np.arange(per_element * piece.first, per_element * piece.end + 1)
         shape = whole if len(pieces) == 1 else taken(replace(whole, name=f"{name}, piece {k}"), "P", own, len(s))
-        yield replace(shape, section=section_data(piece.section))
+        if (make := (piece.section, piece.material)) not in makes:
+            makes.append(make)
+        yield replace(shape, section=section_data(piece.section), make=makes.index(make) if len(pieces) > 1 else None)
 
 
 def section_direction(cable: Cable, s: np.ndarray, nodal: np.ndarray) -> np.ndarray | None:

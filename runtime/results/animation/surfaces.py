@@ -1,4 +1,4 @@
-"""Surfaces in a picture: of contact, as a part of a plane or height field, boxes and round shapes; of fluids, as nets.
+"""Surfaces in a picture: of contact, as a part of a plane or height field, boxes and round shapes; of fluids.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from ...parts.surface import Surface
 from ...parts.surface_shapes import Geometry
 from ...view.animation import BodyShape
 from ...view.surfaces import Surface as Mesh
-from ...view.surfaces import grid_mesh, joined, square_to
+from ...view.surfaces import grid_mesh, square_to
 from .bodies import box_shape, mesh_shape
 from .frames import Frames, one_or_all
 from .hollows import hollow_mesh
@@ -19,8 +19,6 @@ GRID_CELLS = 12
 """Cells of a plane to each side of its middle."""
 MAX_DISTANCE = 2.0
 """Distance from the centre, in sizes of the scene, within which the surface of a fluid is drawn."""
-LINE_WIDTH = 0.05
-"""Width of the lines of a net over its mesh size."""
 
 
 def surface_shape(frames: Frames, name: str, centre: np.ndarray, size: float) -> BodyShape:
@@ -44,22 +42,13 @@ def _at_rest(name: str, origin: np.ndarray, times: int, shape: dict[str, object]
 
 
 def level_shapes(frames: Frames, centre: np.ndarray, size: float) -> list[BodyShape]:
-    """Return the surfaces of fluids near the scene as nets at rest; centre (3,), size: of the scene, m."""
+    """Return the surfaces of fluids near the scene as planes at rest; centre (3,), size: of the scene, m."""
     up, found = frames.scene.up, []
     for name, fluid in frames.scene.fluids.items():
         if fluid.surface is not None and abs(above := fluid.surface - up @ centre) <= MAX_DISTANCE * size:
-            net = mesh_shape(*_net(up, size), np.zeros(3))
-            found.append(_at_rest(name, centre + above * up, len(frames.time), net))
+            plane = mesh_shape(*_plane(up, size), np.zeros(3)) | {"sheet": "water"}
+            found.append(_at_rest(name, centre + above * up, len(frames.time), plane))
     return found
-
-
-def _net(normal: np.ndarray, size: float) -> Mesh:
-    """Return a square net about the origin."""
-    along, across = square_to(normal)
-    u, half = np.linspace(-size, size, 2 * GRID_CELLS + 1), LINE_WIDTH * size / GRID_CELLS / 2
-    ends = np.array([-size - half, size + half])
-    return joined([grid_mesh(ends[:, None, None] * one + (at + np.array([-half, half]))[None, :, None] * other)
-                   for one, other in ((along, across), (across, along)) for at in u])
 
 
 def _drawn(surface: Surface, shape: Geometry, size: float, offset: np.ndarray) -> dict[str, object]:
@@ -74,12 +63,13 @@ def _drawn(surface: Surface, shape: Geometry, size: float, offset: np.ndarray) -
         length = getattr(surface.shape, "length", 0.0) + (2 * shape.radius if shape.word == "capsule" else 0.0)
         return {"kind": "cylinder", "radius": shape.radius, "length": length, "axis": shape.direction.tolist(),
                 "offset": offset.tolist()}
-    return mesh_shape(*(_plane if shape.word == "flat" else _height_field)(shape, size), offset)
+    sheet = _plane(shape.direction, size) if shape.word == "flat" else _height_field(shape, size)
+    return mesh_shape(*sheet, offset) | {"sheet": "ground"}
 
 
-def _plane(shape: Geometry, size: float) -> Mesh:
-    """Return a square part of a plane about its origin."""
-    along, across = square_to(shape.direction)
+def _plane(normal: np.ndarray, size: float) -> Mesh:
+    """Return a square part of a plane about the origin."""
+    along, across = square_to(normal)
     u = np.linspace(-size, size, 2 * GRID_CELLS + 1)
     return grid_mesh(u[:, None, None] * along + u[None, :, None] * across)
 

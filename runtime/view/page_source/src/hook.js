@@ -56,6 +56,11 @@ export function hook(app) {
       const { centres } = view("cable", name, clip).item;
       return Array.from({ length: centres.length / 3 }, (_, p) => absolute(new Vector3().fromArray(centres, 3 * p)));
     },
+    /** The drawn ends of a spring, an arrow ..., in m, the first of its name. */
+    segment(name, clip) {
+      const { start, end } = view("segment", name, clip).item;
+      return [start, end].map(absolute);
+    },
     mark: (name, clip) => absolute(view("mark", name, clip).object.position),
     /** The pixel of a point (in m). */
     pixel(point) {

@@ -66,8 +66,8 @@ export class SegmentView {
     if (this.head) {
       this.head.position.copy(this.end);
       this.head.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), x);
-      this.head.visible = length > 0;
     }
+    this.drawn.children.forEach((part) => (part.visible = length > 0));
   }
 
   enlarge(pixel) {

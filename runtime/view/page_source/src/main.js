@@ -121,6 +121,7 @@ class App {
     const shades = clips.map((_, k) => series[k % series.length]);
     const ground = theme.colour("canvas");
     const rim = theme.dark ? RIM.dark : RIM.light;
+    const colourOfPiece = (make) => (make === null ? theme.colour("cable") : series[make % series.length]);
     let bodies = 0;
     stage.scene.background.set(ground);
     for (const { kind, item, clip } of stage.views) {
@@ -132,9 +133,10 @@ class App {
           range,
           map: state.map,
           rim,
-          plain: several ? shade : theme.colour("cable"),
+          plain: several ? shade : colourOfPiece(item.cable.make),
         });
-      if (kind === "body") {
+      if (kind === "body" && item.sheet) item.colour(...["", "-edge"].map((part) => theme.colour(item.sheet + part)), 0);
+      else if (kind === "body") {
         item.colour(body, theme.colour("edge"), rim);
         this.lastBody = body;
         bodies += 1;

@@ -82,7 +82,7 @@ function bodyAt(stage, x, y) {
   const { clientWidth, clientHeight } = stage.canvas;
   const caster = new Raycaster();
   caster.setFromCamera(new Vector2((2 * x) / clientWidth - 1, 1 - (2 * y) / clientHeight), stage.cameras.camera);
-  const views = stage.of("body");
+  const views = stage.of("body").filter(({ item }) => !item.isWater);
   const hits = caster.intersectObjects(
     views.map(({ item }) => item.mesh),
     false,
