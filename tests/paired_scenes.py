@@ -310,6 +310,7 @@ LOADS: dict[str, Callable[[Site], object]] = {
     "moment": lambda on: on.scene.moment("wire", s=on.at(0.3), value=(0, 0, 0.01)),
     "force on a body": lambda on: on.scene.force(on.held("B", tuple(on.below(0.7, 0.3))), value=(1, 0, 0),
                                                  at=(0, 0.05, 0), follower=True),
+    "point mass": lambda on: on.scene.point_mass("wire", s=on.at(0.3), mass=0.2),
     "moment on a body": lambda on: on.scene.moment(on.held("B", tuple(on.below(0.7, 0.3))), value=(0, 0, 0.01)),
     "spring": partial(_sprung, stiffness=50, damping=0.5, length=0.2),
     "spring that pulls": partial(_sprung, stiffness=50, damping=0.5, length=0.29, tension_only=True),
@@ -327,6 +328,11 @@ LOADS: dict[str, Callable[[Site], object]] = {
 def _drag(on: Site, fluid: dict | None = None, **given) -> None:
     on.scene.fluid("water", density=300, **fluid or {"velocity": (0.3, 0, 0)})
     on.scene.drag("wire", **{"normal": 1.2, "tangential": 0.02} | given, name="drag")
+
+
+def _mass_drag(on: Site, **given) -> None:
+    on.scene.fluid("water", density=300, velocity=(0.3, 0, 0))
+    on.scene.drag(on.scene.point_mass("wire", s=on.at(0.45), mass=0.1), area=0.01, volume=1e-5, name="drag", **given)
 
 
 def _body_drag(on: Site, **given) -> None:
@@ -352,6 +358,8 @@ FLUIDS: dict[str, Callable[[Site], object]] = {
         interpolation="linear", time=[0, 0.5, 1.0], y=[-2, 0, 2], velocity=0.2 * np.ones((3, 3, 3)) * [1, 0, 0])}),
     **{f"profile by {form}": partial(_drag, fluid={"velocity": (0.3, 0, 0), "profile": profile})
        for form, profile in PROFILES.items()},
+    "drag of a point mass": _mass_drag,
+    "added mass of a point mass": partial(_mass_drag, added_mass=0.5),
     "drag of a body": partial(_body_drag, coefficient=0.5, volume=1e-5, at=(0, 0.01, 0)),
     "added mass of a body": partial(_body_drag, added_mass=0.5, volume=1e-5),
     "polar of a body": partial(_body_drag, polar=BODY_POLAR, chord=(1, 0, 0)),

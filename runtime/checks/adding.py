@@ -20,6 +20,7 @@ from ..parts.load import Load
 from ..parts.part import Part
 from ..parts.plane import called
 from ..parts.point_force import PointForce
+from ..parts.point_mass import PointMass
 from ..parts.rope import Rope
 from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
@@ -31,7 +32,7 @@ from .contact_placement import placed_contact, placed_contacts, placed_surface
 from .crossing_placement import placed_crossing
 from .drag_placement import placed_drag, placed_fluid
 from .joint_placement import placed_joint
-from .placement import placed_between, placed_event, placed_point_force, placed_support, placed_tie
+from .placement import placed_between, placed_event, placed_mass, placed_point_force, placed_support, placed_tie
 from .rope_placement import check_beside_ropes, placed_rope
 from .slide_placement import placed_slide
 from .whole_scene import check_plane
@@ -81,8 +82,9 @@ def _lie_in_one_plane(cable: Cable, other: Cable) -> bool:
 
 _CHECKS: dict[type[Part], Callable[[SceneData, Any], Part]] = {
     Cable: placed_cable, Support: placed_support, Tie: placed_tie, Rope: placed_rope, Joint: placed_joint,
-    Slide: placed_slide, Load: rope_loads.placed, PointForce: placed_point_force, Event: placed_event,
-    Fluid: placed_fluid, Drag: placed_drag, Crossing: placed_crossing, Surface: placed_surface, Contact: placed_contact}
+    Slide: placed_slide, Load: rope_loads.placed, PointForce: placed_point_force, PointMass: placed_mass,
+    Event: placed_event, Fluid: placed_fluid, Drag: placed_drag, Crossing: placed_crossing, Surface: placed_surface,
+    Contact: placed_contact}
 
 
 def check_of(part: Part) -> Callable[[SceneData, Any], Any]:

@@ -7,10 +7,10 @@ from collections.abc import Callable
 import numpy as np
 
 from ..errors import SceneError, near
-from ..parts.attachment import Attachment
 from ..parts.cable import Cable
-from ..parts.drag import OF_BODY, OF_CABLE, OF_ROPE, Drag
+from ..parts.drag import OF_BODY, OF_CABLE, OF_MASS, OF_ROPE, Drag
 from ..parts.fluid import NO_SURFACE, Fluid
+from ..parts.locations import point_of
 from ..parts.rope import Rope
 from ..parts.scene_data import SceneData
 from ..parts.validation import LENGTH_TOLERANCE, show
@@ -36,14 +36,20 @@ def placed_drag(scene: SceneData, drag: Drag) -> Drag:
         points = [point for span in scene.route_of(rope).spans for point in (span.start, span.end)]
         _check_table(scene, drag, lambda: np.array([[*point, 0.0][:3] for point in points]))
         return drag
-    placed = placed_attachment(scene, Attachment(on=drag.on, at=drag.at), drag.where)
-    _refuse(drag, "body")
-    _check_foil(scene, drag)
+    mass = scene.point_masses.get(drag.on)
+    end = drag.attachment(scene.point_masses)
+    placed = placed_attachment(scene, end, drag.where)
+    _refuse(drag, "body" if mass is None else "point_mass")
+    if mass is None:
+        _check_foil(scene, drag)
+    elif isinstance(drag.added_mass, tuple):
+        raise SceneError(drag.where, f"acts on {mass.where}, whose added_mass is one number",
+                         "give that of a sphere, 0.5, or take a rigid body on a joint")
     acts = drag.area * (drag.coefficient or drag.lift) != 0 or (drag.area != 0 and drag.polar is not None)
     if not acts and drag.volume == 0:
         raise SceneError(drag.where, "has neither drag nor buoyancy", "give an area with a coefficient, or a volume")
     _check_added_mass(drag, drag.volume, "volume, in m³")
-    _check_table(scene, drag, lambda: scene.bodies[drag.on].point(placed.point)[None])
+    _check_table(scene, drag, lambda: point_of(scene, placed)[None])
     return drag.completed({"at": placed.at})
 
 
@@ -258,9 +264,9 @@ def _check_added_mass_of_line(drag: Drag, line: Cable | Rope) -> None:
 
 
 def _refuse(drag: Drag, kind: str) -> None:
-    """Raise SceneError for values that a drag on this kind of part, "cable", "rope" or "body", does not take."""
+    """Raise SceneError for values that a drag on this kind of part, a body of either kind as "body", does not take."""
     defaults = {name: field.default for name, field in Drag.model_fields.items()}
-    takes = {"cable": OF_CABLE, "rope": OF_ROPE, "body": OF_BODY}[kind]
+    takes = {"cable": OF_CABLE, "rope": OF_ROPE, "body": OF_BODY, "point_mass": OF_MASS}[kind]
     for name in (name for name in OF_BODY + OF_CABLE if name not in takes):
         if getattr(drag, name) != defaults[name]:
             raise SceneError(drag.where, f'acts on {kind} "{drag.on}" and takes no {name}', f"takes {', '.join(takes)}")

@@ -17,6 +17,7 @@ from ..parts.locations import Node, grips, joined, node_of, point_of, support_of
 from ..parts.modal_body import ModalBody
 from ..parts.part import Part
 from ..parts.point_force import PointForce
+from ..parts.point_mass import PointMass
 from ..parts.rope import Rope
 from ..parts.scene_data import SceneData
 from ..parts.signal import Signal, presence_of
@@ -256,6 +257,17 @@ def placed_point_force(scene: SceneData, force: PointForce) -> PointForce:
         raise SceneError(force.where, f"both ends are at {show(points[0], 'm')}: its direction is lost",
                          "join the points, draw them apart, or give a spring length=0")
     return force.at_distance(distance)
+
+
+def placed_mass(scene: SceneData, mass: PointMass) -> PointMass:
+    """Return the point mass, checked to be on a cable. Raises SceneError."""
+    if (body := scene.bodies.get(mass.on)) is not None:
+        raise SceneError(mass.where, f"is on {body.where}, and no cable", "count it in the mass of the body")
+    if (rope := scene.ropes.get(mass.on)) is not None:
+        raise SceneError(mass.where, f"is on {rope.where}, whose material runs over sheaves",
+                         f'take a rigid_body, and a spherical joint with ("{rope.name}", s)')
+    cable_at(scene, mass.on, mass.where, mass.s)
+    return mass
 
 
 def placed_event(scene: SceneData, event: Event) -> Event:

@@ -103,9 +103,10 @@ def coarsest(scene: SceneData, cable: Cable) -> int:
 
 
 def node_places(scene: SceneData, cable: Cable) -> list[float]:
-    """Return the arc-lengths of a cable's supports, ties, watched nodes, point loads and joints, in m."""
+    """Return the arc-lengths of a cable's supports, ties, watched nodes, point loads and masses, and joints, in m."""
     loads = [load.s for load in scene.loads.values()
              if isinstance(load, Force | Moment) and load.on == cable.name and isinstance(load.s, float)]
+    loads += [mass.s for mass in scene.masses_on(cable.name)]
     return [*_supported(scene, cable), *loads, *(end.arc_length for end in scene.attachments() if end.on == cable.name)]
 
 

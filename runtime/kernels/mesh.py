@@ -63,6 +63,10 @@ class Mesh:
         """Return (elements + 1,): the number of a node at each end of the elements, of two the first."""
         return np.unique(self.boundary_of_node, return_index=True)[1]
 
+    def at_node(self, node: int) -> range:
+        """Return the numbers of the nodes at a place, by that of the first of them."""
+        return range(node, node + 1 + bool(self.doubled and node + 1 in self.first_node(self.doubled)))
+
     @cached_property
     def first(self) -> Any:
         """Return the index, of an array of nodes, of the first nodes of the elements."""

@@ -17,6 +17,7 @@ from .cutting import attached
 from .driven_dofs import DrivenDofs
 from .kinds import COUPLINGS
 from .model import CableModel, Model, MotionModel
+from .point_masses import with_masses, with_weights
 from .rope_model import rope_models, turn_motions
 from .rope_rates import follow
 from .unknowns import Node, supports
@@ -34,7 +35,7 @@ def build(scene: SceneData, supplied: bool = False) -> Model:
     cables: list[CableModel] = []
     n_flexible = 0
     for cable in drawn:
-        cables.append(cable.model(n_flexible))
+        cables.append(with_masses(cable.model(n_flexible), scene.masses_on(cable.cable.name)))
         n_flexible = cables[-1].coordinates.stop
     ropes = rope_models(scene, n_flexible, supplied)
     driven = DrivenDofs.of(scene, ropes[-1].coordinates.stop if ropes else n_flexible)
@@ -62,7 +63,8 @@ def build(scene: SceneData, supplied: bool = False) -> Model:
                   *(velocity_of(body, dim) for body in described)),
         weight=_joined(*(cable.weights for cable in drawn), *(rope.weight for rope in ropes), driven.still,
                        *(body_weights(body, dim) for body in described)),
-        gravity=_joined(*(cable.gravity(gravity) for cable in drawn),
+        gravity=_joined(*(with_weights(cable.gravity(gravity), of, scene.masses_on(of.name), gravity)
+                          for cable, of in zip(drawn, cables, strict=True)),
                         *(0 * rope.q for rope in ropes), driven.still,
                         *(body_gravity(body, gravity) for body in bodies)),
         unknown_of_dof=np.append(reduction.unknown_of_dof, beside_cables).astype(int),

@@ -65,8 +65,11 @@ def _parts_of(name: str, scene: SceneData) -> list[str]:
 
 
 def _masses(scene: SceneData) -> dict[str, float]:
-    """Return the masses of cables and bodies, kg."""
-    return {name: part.mass for parts in (scene.cables, scene.bodies) for name, part in parts.items()}
+    """Return the masses of cables, with point masses on them, and bodies, kg."""
+    found = {name: part.mass for parts in (scene.cables, scene.bodies) for name, part in parts.items()}
+    for mass in scene.point_masses.values():
+        found[mass.on] += mass.mass
+    return found
 
 
 def _dofs(model: Model, name: str) -> slice:

@@ -57,6 +57,13 @@ def densities(model: Model, drag: DragModel, time: np.ndarray, q: np.ndarray, v:
     return spatial(f.reshape(r.shape) + drag.buoyancy), turning
 
 
+def at_rest(model: Model, drag: DragModel, q: np.ndarray) -> np.ndarray:
+    """Return the force (dim,) in N on the point of a drag at rest at t = 0, all of it in the fluid; q (n_q,)."""
+    r = attachment_points(model, drag.attachments[0], q[None])[:, : model.dim]
+    U = _velocity(drag, np.zeros(1), r)[0]
+    return np.asarray(drag.buoyancy + drag.coefficients[0] * np.linalg.norm(U) * U)
+
+
 def _at_points(shape: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Return (T, elements, points, dim) from shape functions (1 or elements, points, vectors) and vectors (T, elements,
     vectors, dim).

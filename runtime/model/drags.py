@@ -10,7 +10,6 @@ import numpy as np
 
 from ..base.deferred import dataclass
 from ..kernels.element_line import along_elements
-from ..parts.attachment import Attachment
 from ..parts.cable import Cable
 from ..parts.drag import Drag
 from ..parts.flow_profile import PowerProfile, TableProfile
@@ -34,8 +33,8 @@ KERNELS = {2: "planar_drag", 3: "drag"}
 
 @dataclass(eq=False, repr=False)
 class DragModel(AlongSpan, CouplingModel):
-    """The force of a fluid on a cable, on a span of a rope, or on a point of a body; cable -1: along the span of the
-    coordinates, or on a body, at the one attachment.
+    """The force of a fluid on a cable, on a span of a rope, or on a point; cable -1: along the span of the coordinates,
+    or at the one attachment, to a body or a cable.
 
     velocity (dim): m/s, multiplied by the signal of that number (-1: one) and the profile of the fluid at the
     height base + up . r. degree: of the splines of its table, 0 without. origin (3,), axes (9,): those of the
@@ -74,6 +73,11 @@ class DragModel(AlongSpan, CouplingModel):
     N_x: np.ndarray = field(default_factory=no_numbers)
     N_chord: np.ndarray = field(default_factory=no_numbers)
     attachments: Sequence[AttachmentModel] = ()
+
+    @property
+    def on_cable(self) -> bool:
+        """Return whether it acts at a point of a cable."""
+        return any(end.cable >= 0 for end in self.attachments)
 
 
 def drag_models(builder: ModelBuilder) -> Iterator[DragModel]:
@@ -116,7 +120,7 @@ def _in_fluid(part: Drag, fluid: Fluid, builder: ModelBuilder, stretch: UniformP
     if line is None or stretch is None:
         coefficient = part.coefficient if part.polar is None else 0.0
         model.coefficients = (fluid.density / 2 * part.area * coefficient, MIN_SPEED)
-        model.attachments = [builder.attachment(Attachment(on=part.on, at=part.at), np.eye(3))]
+        model.attachments = [_point(part, builder)]
     else:
         _along_line(model, part, stretch.section)
         if isinstance(line, Cable):
@@ -124,6 +128,14 @@ def _in_fluid(part: Drag, fluid: Fluid, builder: ModelBuilder, stretch: UniformP
         else:
             model.coordinates = span
     return model
+
+
+def _point(part: Drag, builder: ModelBuilder) -> AttachmentModel:
+    """Return the point of a body, with its axes, or of a cable, with those of the ground."""
+    end = builder.attachment(part.attachment(builder.scene.point_masses), np.eye(3))
+    if end.cable >= 0:
+        end.frame, end.axes = "", np.eye(builder.scene.dim)
+    return end
 
 
 def _along_line(model: DragModel, part: Drag, section: Section) -> None:

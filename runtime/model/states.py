@@ -63,7 +63,12 @@ def support_force(model: Model, scene: SceneData, part: Support, reaction: np.nd
 
 def _supported(model: Model, scene: SceneData, part: Support) -> list[Node]:
     """Return the node of a support and the nodes joined to it."""
-    return [model.nodes[cable][k] for cable, k in joined(scene, node_of(scene, part))]
+    return _nodes(model, scene, joined(scene, node_of(scene, part)))
+
+
+def _nodes(model: Model, scene: SceneData, at: Iterable[tuple[str, int]]) -> list[Node]:
+    """Return nodes by cable and number, with the second ones at joints of pieces of a cable."""
+    return [model.nodes[cable][each] for cable, k in at for each in scene.cables[cable].mesh.at_node(k)]
 
 
 def tie_force(model: Model, scene: SceneData, tie: Tie, reaction: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
@@ -76,7 +81,7 @@ def tie_force(model: Model, scene: SceneData, tie: Tie, reaction: np.ndarray, q:
     sign, near = 1.0, joined(scene, one, without=tie)
     if near & supported:
         sign, near = -1.0, joined(scene, other, without=tie)
-    found = force_and_moment([model.nodes[cable][k] for cable, k in near], reaction, q)
+    found = force_and_moment(_nodes(model, scene, near), reaction, q)
     return {name: sign * value for name, value in found.items()}
 
 

@@ -1,14 +1,16 @@
 """Forces of a fluid on a cable or a body: drag, lift, buoyancy and added mass."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from numbers import Real
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
+from .attachment import Attachment
 from .part import Part
 from .piece import UniformPiece
+from .point_mass import PointMass
 from .polar import Polar
 from .quantity import all_of_engine
 from .schemas import AXIS, TENSOR, Turning, checked, list_of_lists, list_schema, number_schema
@@ -36,6 +38,7 @@ if TYPE_CHECKING:
 OF_CABLE = ("start", "stop", "normal", "tangential", "lift", "polar", "chord", "diameter", "displaced_area",
             "added_mass", "added_mass_tangential")
 OF_ROPE = ("normal", "tangential", "lift", "diameter", "displaced_area", "added_mass", "added_mass_tangential")
+OF_MASS = ("area", "coefficient", "volume", "height", "added_mass")
 OF_BODY = ("area", "coefficient", "lift", "polar", "span", "chord", "at", "volume", "height", "added_mass")
 
 
@@ -55,7 +58,7 @@ def _check_added_mass(matrix: np.ndarray) -> None:
 
 
 class Drag(Part):
-    """Drag, lift, buoyancy and added mass of a cable or a body in a `Fluid`.
+    """Drag, lift, buoyancy and added mass of a cable, a body or a point mass in a `Fluid`.
 
     The velocity w is that of the fluid past the cable or body, w_n and w_t its parts across and along a cable, i the
     direction along the cable from its start, s the span of a body, w_p the part of w across the span.
@@ -69,7 +72,7 @@ class Drag(Part):
     On a rope all but polar act on its spans, by the velocity of the material. Nothing acts on what lies on sheaves and
     drums: where material runs onto one, the energy of its added mass returns to the rope.
 
-    on: the cable or the rope, all of it, or the body
+    on: the cable or the rope, all of it, or the body, or the point mass, a body without axes
     fluid: by default all fluids of the scene, which must not overlap
     start, stop: of a cable, arc-lengths of the nodes between which the fluid acts, m; by default all of it
     normal: of a cable, coefficient of the force ``ρ/2 d normal |w_n| w_n`` a length
@@ -130,6 +133,11 @@ class Drag(Part):
         if isinstance(self.added_mass, tuple) and (off := [self.added_mass[k][2] for k in range(2)]) != [0.0, 0.0]:
             yield f"added_mass, whose entries xz and yz are {show((off[0], off[1]))},"
         yield from super().off_plane()
+
+    def attachment(self, masses: Mapping[str, PointMass]) -> Attachment:
+        """Return the point of a body or of one of the point masses, by name, that it acts on."""
+        mass = masses.get(self.on)
+        return Attachment(on=self.on, at=self.at) if mass is None else Attachment(on=mass.on, s=mass.s)
 
     @property
     def foil_axes(self) -> tuple[np.ndarray, np.ndarray]:

@@ -5,6 +5,7 @@ The package exports them. A further kind is one file beside this one and one lin
 # ruff: noqa: I001  the order of the lines is that of the kinds
 
 from .cable import Cable as Cable
+from .point_mass import PointMass as PointMass
 from .support import Pin as Pin
 from .support import Clamp as Clamp
 from .support import Motion as Motion

@@ -26,6 +26,7 @@ from .part import Part
 from .plane import Plane
 from .plane_axes import PlaneAxes
 from .point_force import PointForce
+from .point_mass import PointMass
 from .rigid_body import RigidBody
 from .rope import Rope
 from .signal import Signal
@@ -104,6 +105,7 @@ class SceneData:
     """
 
     cables: dict[str, Cable]
+    point_masses: dict[str, PointMass]
     pins: list[Pin]
     clamps: list[Clamp]
     motions: list[Motion]
@@ -175,6 +177,10 @@ class SceneData:
     def line(self, name: str) -> Cable | Rope | None:
         """Return the cable or the rope of a name, None without one."""
         return self.cables.get(name) or self.ropes.get(name)
+
+    def masses_on(self, cable: str) -> list[PointMass]:
+        """Return the point masses on a cable, by its name."""
+        return [mass for mass in self.point_masses.values() if mass.on == cable]
 
     @property
     def dim(self) -> int:

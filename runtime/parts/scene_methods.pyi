@@ -23,6 +23,7 @@ from .material import Material
 from .modal_body import ModalBody
 from .part import Part
 from .piece import Piece
+from .point_mass import PointMass
 from .polar import Polar
 from .rigid_body import RigidBody
 from .rope import Rope
@@ -74,6 +75,16 @@ class SceneMethods(SceneData):
         angular_velocity: Numbers = (0.0, 0.0, 0.0),
     ) -> Cable:
         """Add a Cable, which see."""
+
+    def point_mass(
+        self,
+        on: Named,
+        *,
+        s: float,
+        mass: float,
+        name: str | None = None,
+    ) -> PointMass:
+        """Add a PointMass, which see."""
 
     def pin(
         self,

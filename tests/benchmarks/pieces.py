@@ -1,10 +1,11 @@
-"""Cables of several pieces beside closed forms and another program: forces, waves, frequencies.
+"""Cables of several pieces and with point masses beside closed forms and another program: forces, waves, frequencies.
 
     python tests/benchmarks/pieces.py [--out FILE.csv] [--elements 40]
 
 Rows: the elongation of a bar of two materials; the waves that the joint of such a bar reflects and transmits; the
 frequencies of a stepped cantilever (transfer matrices of Euler and Bernoulli); two ropes in line under gravity (elastic
-catenary by pieces, without bending); a lazy-wave cable in water from one cable (another program, converged). CPU in s.
+catenary by pieces, without bending); the frequencies of a string with a bead in its middle; a lazy-wave cable in water
+from one cable (another program, converged). CPU in s.
 """
 
 from __future__ import annotations
@@ -137,6 +138,33 @@ def two_ropes(element: str, elements: int) -> tuple[np.ndarray, np.ndarray]:
     return np.abs(force), np.abs(closed)
 
 
+def bead(element: str, elements: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lowest three frequencies across a string with a bead in its middle, and their closed form, Hz.
+
+    Where the bead moves, tan(k L/2) = 2 mass of the string/(mass of the bead k L); else k L = 2 pi. A hinge lets the
+    string have a kink there.
+    """
+    span, stretch, area, mass = 2.0, 1e-3, 1e-4, 0.3
+    scene = fu.Scene(gravity=(0, 0, 0))
+    material = fu.Material(youngs_modulus=1e9, poisson_ratio=0.3, density=1000)
+    length = span / (1 + stretch)
+    for name, start in (("left", 0.0), ("right", span / 2)):
+        scene.cable(name, start=(start, 0, 0), end=(start + span / 2, 0, 0), rest_length=length / 2, element=element,
+                    strain="engineering", elements=elements // 2, material=material,
+                    section=fu.GeneralSection(area=area, second_moment_about_z=0.0))
+    scene.pin("left", s=0)
+    scene.pin("right", s=length / 2)
+    scene.tie("left", s=length / 2, to="right", at=0, rotation="free")
+    scene.point_mass("left", s=length / 2, mass=mass)
+    tension, per_length = material.youngs_modulus * area * stretch, material.density * area * length / span
+    ratio = 2 * per_length * span / mass
+    moving = [brentq(lambda a: a * np.sin(a / 2) - ratio * np.cos(a / 2), low, low + np.pi)
+              for low in (0.0, 2 * np.pi)]
+    closed = np.sort([moving[0], 2 * np.pi, moving[1]]) / span * np.sqrt(tension / per_length) / (2 * np.pi)
+    frequencies = np.asarray(scene.modes(6, about=scene.equilibrium()).frequency)
+    return frequencies[:: 1 if scene.dim == 2 else 2][:3], closed
+
+
 def riser(elements: tuple[int, ...], name: str = "80 m") -> fu.Scene:
     """Return a lazy-wave cable of slack_lines.py from one cable, drawn straight."""
     data = LAZY_WAVES[name]
@@ -183,6 +211,9 @@ def main() -> None:
         add(f"stepped cantilever, {element}: ", lambda element=element: cantilever(element, given.elements // 2 or 1),
             *(f"frequency {k}, Hz" for k in (1, 2, 3)))
     add("two ropes: force ", lambda: two_ropes("cable8p", given.elements), "along, N", "up, N")
+    for element in ("cable12", "cable18", "cable8p"):
+        add(f"string with a bead, {element}: ", lambda element=element: bead(element, given.elements),
+            *(f"frequency {k}, Hz" for k in (1, 2, 3)))
     data = LAZY_WAVES["80 m"]
     add("lazy wave, 80 m, one cable: hang-off force, N", lambda: (float(np.linalg.norm(
         riser(MESHES[200]).equilibrium()["riser@0.force"])), data.force))

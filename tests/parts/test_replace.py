@@ -117,6 +117,7 @@ def everything() -> fu.Scene:
     scene = rope(strain="engineering")
     scene.cable("bar", **ROPE | {"start": (0, 0, 1), "end": (1, 0, 1), "element": "beam24", "law": "structural"})
     scene.cable("hook", **ROPE | {"start": (1, 0, 0), "end": (2, 0, 0)})
+    scene.point_mass("rope", s=0.4, mass=1.0, name="clump")
     scene.pin("rope", s=0.0)
     scene.clamp("bar", s=0.5, fix="all")
     scene.motion("bar", s=1.0, displacement=(fu.Harmonic(amplitude=0.1, frequency=1.0), 0, "free"))
@@ -166,6 +167,7 @@ OTHERS = {
                   youngs_modulus=2e9, poisson_ratio=0.3, density=density)) for density, n in ((1000, 4), (2000, 8))],
               "rest": "straight", "rest_length": 1.0, "shape": "straight", "temperature": 0.0,
               "velocity": (0, 0, 1), "angular_velocity": (0, 1, 0)},
+    "point_mass": {"on": "hook", "s": 0.5, "mass": 2.0, "name": "x"},
     "pin": {"cable": "hook", "s": 0.25}, "clamp": {"cable": "rope", "s": 0.0, "fix": "section"},
     "motion": {"cable": "rope", "s": 0.75, "displacement": (0, 0, 0), "rotation": ((1, 0, 0), 0.1)},
     "tie": {"cable": "hook", "s": 0.0, "to": "rope", "at": 1.0, "rotation": "rigid", "name": "knot_2"},

@@ -84,6 +84,10 @@ def marks(frames: Frames, refs: Frames, size: float) -> Iterator[Mark]:
         name = part.given_name or part.kind
         if "position" in part.results and not isinstance(part, Rope) and frames.has(f"{name}.position"):
             yield Mark(name, "point", still(frames.value(f"{name}.position")), _point_description(part))
+    for name, mass in scene.point_masses.items():
+        end = Attachment(on=mass.on, s=mass.s)
+        yield Mark(name, "point", still(place(frames, end)), f"{show(mass.mass, 'kg')} on {_on(end)}",
+                   one_or_all(place(refs, end)))
     for part, end in _attachments(scene):
         if end.on is None:
             yield Mark(part.given_name or part.kind, "ground", place(frames, end), f"ground end of {part.where}")
@@ -278,7 +282,7 @@ def _flows(frames: Frames, refs: Frames, longest: float) -> Iterator[Segment]:
         fluids = [fluid for fluid in scene.fluids_of(drag) if fluid.moves]
         if not fluids:
             continue
-        end = Attachment(on=drag.on, at=drag.at)
+        end = drag.attachment(scene.point_masses)
         if scene.line(drag.on) is not None:
             end = Attachment(on=drag.on, s=float(np.mean(_ends(frames, drag.on))))
         at = np.broadcast_to(place(frames, end), (len(time), 3))

@@ -89,7 +89,7 @@ def balanced(cable: Cable, model: CableModel, forces: ElementForces, loads: Cabl
             parts = _of_spread(model, spread, np.clip(reach, spread.start, spread.stop), e[:, columns])
             for total, part, where in zip((force, moment, change), parts, (here, here, ends), strict=True):
                 total[:, columns] -= np.where(where, part, 0.0)
-    for load in loads.points.get(number, []):
+    for load in [*loads.points.get(number, []), *forces.masses]:
         of = forces.e[instants[:, 0], load.element]
         jump = resultants(load.f, of, is_r, spatial(of[:, 0]))
         near = np.where(after, cuts.near, -cuts.near)

@@ -22,6 +22,7 @@ from ...model.loads import GAUSS
 from ...model.model import CableModel, Model
 from ...model.states import attachment_points, element_coordinates, positions, spatial
 from ...parts.load import DistributedForce, Force, Moment
+from ...parts.point_mass import PointMass
 from ...parts.scene_data import SceneData
 from ...parts.signal import Signal
 from ..shape_functions import of_slopes, on_axis
@@ -104,6 +105,17 @@ class CableLoads:
         of, at = (np.broadcast_to(value, self.times) for value in (element, x))
         self.points.setdefault(cable, []).append(PointLoad(of, at, f))
 
+    def of_mass(self, number: int, mass: PointMass, inertia: np.ndarray) -> PointLoad:
+        """Return the inertia of a point mass of a cable, less its weight, as a force on the cable.
+
+        inertia: of the elements, see `ElementForces`.
+        """
+        cable = self.model.cables[number]
+        element, x = cable.mesh.place(min(max(mass.s, 0.0), cable.mesh.total))
+        N = on_axis(cable, element, x)[0]
+        f = -mass.mass * np.einsum("k,l,tld->tkd", N, N, inertia[:, int(element)])
+        return PointLoad(np.broadcast_to(element, self.times), np.broadcast_to(x, self.times), f)
+
     def _add_at(self, number: int, s: np.ndarray, force: np.ndarray) -> None:
         """Add a force (T, 3) at arc-lengths s (T,) of a cable."""
         cable = self.model.cables[number]
@@ -185,6 +197,8 @@ class CableLoads:
 
     def _drags(self) -> None:
         """Add drag, buoyancy, and the inertia of fluids without the accelerations of the cables."""
+        for name, end in {drag.name: drag.attachments[0] for drag in self.model.drags if drag.on_cable}.items():
+            self._on_end(end, self.at.value(f"{name}.force"), None)
         for number, drag in enumerate(self.model.drags):
             if drag.cable not in self.cables:
                 continue

@@ -51,7 +51,7 @@ def _of_pieces(cable: Cable, model: CableModel, forces: ElementForces, loads: Ca
 
 def _of_points(cable: Cable, model: CableModel, forces: ElementForces, loads: CableLoads, number: int,
                force_at: ForceAt) -> list[Kink]:
-    points, is_r = loads.points.get(number, []), positions(model)
+    points, is_r = [*loads.points.get(number, []), *forces.masses], positions(model)
     if not points:
         return []
     s = np.stack([model.mesh.each_start(load.element) + load.x for load in points], axis=1)

@@ -12,8 +12,9 @@ from ...model.joints import JointModel
 from ...model.model import CableModel, Model, orders_of, per_grown
 from ...model.states import element_coordinates, positions
 from ...model.unknowns import by_unknowns
+from ...parts.scene_data import SceneData
 from .about_start import about
-from .cable_loads import CableLoads, Instants
+from .cable_loads import CableLoads, Instants, PointLoad
 from .spreads import Spread
 
 
@@ -23,16 +24,17 @@ class ElementForces:
 
     given: generalised forces of the nodes on each element; inertia: nodal accelerations plus mass damping less gravity,
     so that mass times inertia is the resultant on a length of cable; e: nodal vectors. spreads: inertia of the added
-    mass of fluids.
+    mass of fluids; masses: that of point masses, as forces on the cable.
     """
 
     given: np.ndarray
     inertia: np.ndarray
     e: np.ndarray
     spreads: list[Spread]
+    masses: list[PointLoad]
 
 
-def element_forces(model: Model, at: Instants, loads: CableLoads, cable: int) -> ElementForces:
+def element_forces(scene: SceneData, model: Model, at: Instants, loads: CableLoads, cable: int) -> ElementForces:
     """Return the forces of one of the cables of the loads, by its number; at rest without accelerations."""
     forces = {k: internal(model.cables[k], at) - _external(model, k, at, loads) for k in loads.cables}
     accelerations = np.zeros_like(at.v) if at.is_rest else _accelerations(model, at, forces, loads)
@@ -46,7 +48,8 @@ def element_forces(model: Model, at: Instants, loads: CableLoads, cable: int) ->
         given[:, spread.element] -= spread.f
     mass_damping = of.of_elements(lambda piece: piece.mass_damping)[:, None, None]
     inertia = a + mass_damping * element_coordinates(of, at.v) - _uniform(of, loads.gravity)
-    return ElementForces(given, inertia, element_coordinates(of, at.q), spreads)
+    return ElementForces(given, inertia, element_coordinates(of, at.q), spreads,
+                         [loads.of_mass(cable, mass, inertia) for mass in scene.masses_on(of.name)])
 
 
 def internal(cable: CableModel, at: Instants) -> np.ndarray:

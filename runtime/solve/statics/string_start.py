@@ -13,7 +13,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from ...model.contacts import ContactModel
-from ...model.drag_forces import densities
+from ...model.drag_forces import at_rest, densities
 from ...model.drags import DragModel
 from ...model.loads import GAUSS, DeadLoadModel
 from ...model.model import Model
@@ -123,12 +123,14 @@ def _string_loads(problem: StaticProblem, q: np.ndarray) -> np.ndarray:
     for drag in model.drags:
         if drag.cable >= 0:
             _add_drag(model, drag, q, p, force)
+        elif drag.on_cable:
+            _add_drag_at_point(model, drag, q, p, force)
     return force
 
 
 def _depend_on_shape(model: Model) -> bool:
     """Return whether loads on cables depend on their shape: those of flowing fluids."""
-    return any(drag.cable >= 0 and (drag.velocity.any() or drag.degree) for drag in model.drags)
+    return any((drag.cable >= 0 or drag.on_cable) and (drag.velocity.any() or drag.degree) for drag in model.drags)
 
 
 def _add_drag(model: Model, drag: DragModel, q: np.ndarray, p: float, force: np.ndarray) -> None:
@@ -140,6 +142,13 @@ def _add_drag(model: Model, drag: DragModel, q: np.ndarray, p: float, force: np.
     own, node = cable.nodal(force), cable.mesh.first_node(np.arange(drag.first, drag.first + drag.n_elements))
     own[node, at] += np.einsum("egd,g->ed", f, 1 - share)
     own[node + 1, at] += np.einsum("egd,g->ed", f, share)
+
+
+def _add_drag_at_point(model: Model, drag: DragModel, q: np.ndarray, p: float, force: np.ndarray) -> None:
+    """Add p times the force of a fluid on a point of a cable at rest."""
+    end = drag.attachments[0]
+    f = p * at_rest(model, drag, q)
+    force[model.cables[end.cable].dofs_of(end.element)] += np.outer(end.N, f).ravel()
 
 
 class _Line:

@@ -178,8 +178,8 @@ static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const f
     }
 }
 
-/* A body's point at both ends of a step and half-way, and its motion relative to the fluid there; theta: Cayley vector
- * of the rotation. */
+/* A point of a body, or of a cable, which does not turn, at both ends of a step and half-way, and its motion relative to
+ * the fluid there; theta: Cayley vector of the rotation. */
 typedef struct {
     fu_attachment_state ends[2], turning;
     relative_motion motion[2], halfway;
@@ -190,7 +190,7 @@ typedef struct {
 static void body_over_step(const fu_model *model, const fu_drag *drag, const fu_equations *at, body_step *out)
 {
     const fu_attachment *on = &drag->attachments[0];
-    const int dim = model->dim, turns = fu_turns(dim), dof = model->bodies[on->body].dof;
+    const int dim = model->dim, turns = fu_turns(dim);
     const fu_state *states[2] = {at->now, at->next};
     fu_attachment_state *const ends = out->ends;
     double middle[3] = {0.0}, arm[3] = {0.0}, turned[3];
@@ -198,20 +198,23 @@ static void body_over_step(const fu_model *model, const fu_drag *drag, const fu_
         fu_attachment_at(model, on, states[i], 0.0, FU_POINT | FU_AXES, &ends[i]);
         out->motion[i] = motion_in_fluid(model, drag, states[i]->t, ends[i].p, ends[i].v);
     }
-    fu_attachment_at(model, on, at->middle, 0.0, FU_AXES, &out->turning);
+    fu_attachment_at(model, on, at->middle, 0.0, FU_PLACE | FU_AXES, &out->turning);
     memset(out->theta, 0, sizeof out->theta);
-    for (int k = 0; k < turns; ++k)
-        for (int i = 0; i < out->turning.n; ++i)
-            out->theta[k] += out->turning.T[k * out->turning.n + i] * at->psi[dof + i];
+    memset(out->change, 0, sizeof out->change);
     for (int d = 0; d < dim; ++d) {
         middle[d] = 0.5 * (ends[0].p[d] + ends[1].p[d]);
         out->v[d] = (ends[1].p[d] - ends[0].p[d]) / at->h;
-        arm[d] = out->v[d] - at->psi[dof + d] / at->h;
     }
+    out->halfway = motion_in_fluid(model, drag, at->middle->t, middle, out->v);
+    if (on->body < 0) return;
+    const int dof = model->bodies[on->body].dof;
+    for (int k = 0; k < turns; ++k)
+        for (int i = 0; i < out->turning.n; ++i)
+            out->theta[k] += out->turning.T[k * out->turning.n + i] * at->psi[dof + i];
+    for (int d = 0; d < dim; ++d) arm[d] = out->v[d] - at->psi[dof + d] / at->h;
     fu_swing(dim, out->theta, arm, turned);
     for (int d = 0; d < dim; ++d)
         out->change[d] = ends[1].v[d] - ends[0].v[d] - (states[1]->v[dof + d] - states[0]->v[dof + d]) - turned[d];
-    out->halfway = motion_in_fluid(model, drag, at->middle->t, middle, out->v);
 }
 
 /* The same for a body: its moment also balances the work of the impulse's change by rotation. */

@@ -37,7 +37,7 @@ int fu_drag_densities(const fu_model *model, const fu_coupling *coupling, const 
     return loop.n_rows;
 }
 
-/* Computes a body's point, and its motion with the coordinates; over a step that conserves energy, the mean position
+/* Computes a point of a body or of a cable, and its motion with the coordinates; over a step that conserves energy, the mean position
  * with the mean velocity. */
 static void place_on_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const fu_equations *step,
                           fu_drag_place *at, fu_attachment_state *end)
@@ -58,7 +58,7 @@ static void place_on_body(const fu_model *model, const fu_drag *drag, const fu_s
     fu_discrete_point(model, on, step->now, step->next, end->P);
 }
 
-/* Adds drag and buoyancy of a body's point, at a state or over a step. */
+/* Adds drag and buoyancy of such a point, at a state or over a step. */
 static void on_body(const fu_model *model, const fu_drag *drag, double t, const fu_state *state,
                     const fu_equations *step, const fu_drag_sums *sums)
 {

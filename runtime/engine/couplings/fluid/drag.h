@@ -51,7 +51,7 @@ typedef struct {
     fu_coupling base; /* base.has_inertia: with added mass */
     const fu_drag_kernels *kernel;
     fu_flow flow;
-    int cable;              /* -1: at a point of a body, or along a span */
+    int cable;              /* -1: at a point of a body or of a cable, or along a span */
     int first, n_elements;  /* elements of the cable on which it acts */
     fu_span_elements on;    /* the span of a rope; without kernels: none */
     double coefficients[3]; /* as the kernel takes them */
