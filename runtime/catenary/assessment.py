@@ -56,7 +56,8 @@ def uplift(run: Run) -> np.ndarray:
     places = masts(run)
     wire, positions = run.scene.cables["contact"], run["contact.position"]
     at = [int(np.argmin(np.abs(positions[0, :, 0] - x))) for x in places]
-    return positions[:, at, 1] - wire.drawn_through[0][1]
+    x, y, _ = zip(*wire.drawn_through, strict=True)
+    return np.asarray(positions[:, at, 1] - np.interp(places, x, y))
 
 
 def losses(run: Run, pantograph: str = "pantograph") -> list[tuple[float, float]]:

@@ -1,126 +1,249 @@
-"""A catenary of equal spans, and its state of rest with wires that do not bend, in closed form."""
+"""A catenary of spans, and its state of rest with wires that do not bend, in closed form."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated
+from itertools import accumulate
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import model_validator
 
 from ..parts.part import Part
-from ..parts.validation import Count, finite, positive, show
+from ..parts.schemas import checked, list_schema, number_schema
+from ..parts.validation import Count, items, number, positive, positive_number, show, shown
 from .wires import Droppers, SteadyArm, Wire
 
 SYMMETRY_TOLERANCE = 1e-9
 """Part of the span by which droppers and their mirror images may differ."""
 
+
+@dataclass(frozen=True)
+class Span:
+    """A span of a line: its droppers, the place of its first mast and its length, in m along the track."""
+
+    droppers: Droppers
+    start: float
+    length: float
+
+    @property
+    def fractions(self) -> np.ndarray:
+        """Return the places of the droppers, from 0 to 1 of the span."""
+        return np.array(self.droppers.at) / self.length
+
+    @property
+    def is_symmetric(self) -> bool:
+        """Return whether the droppers are their mirror images about the middle of the span."""
+        at, depths = np.array(self.droppers.at), self.droppers.depths
+        off = np.abs([at - (self.length - at[::-1]), depths - depths[::-1]])
+        return bool((off <= SYMMETRY_TOLERANCE * self.length).all())
+
+
 @dataclass(frozen=True)
 class AtRest:
-    """A span of strings: forces of the droppers (N), distances of their ends (m), the messenger's heights there (m),
-    and the lengths of both wires along their shapes (m).
+    """Spans of strings: forces of the droppers (N), distances of their ends (m), the messenger's heights there (m),
+    each of one span after the other, and the lengths of both wires along their shapes by span (m).
     """
 
     forces: np.ndarray
     distances: np.ndarray
     heights: np.ndarray
-    contact_length: float
-    messenger_length: float
+    contact_lengths: np.ndarray
+    messenger_lengths: np.ndarray
+
+
+def _one_or_list(of: Callable[[Any], Any], what: str) -> Callable[[Any], Any]:
+    """Return the check of a value, or of a list of one or more of them."""
+    def check(value: Any) -> Any:
+        if isinstance(value, list | tuple | np.ndarray):
+            if (given := items(value, 1)) is None:
+                raise ValueError(f"must be {what}, or a list of them, got {shown(value)}")
+            return tuple(map(of, given))
+        return of(value)
+
+    return check
+
+
+LENGTHS = {"anyOf": [number_schema("m"), list_schema("m", 1, None)]}
+Lengths = Annotated[float | tuple[float, ...], checked(_one_or_list(lambda value: positive_number(value, "m"),
+                                                                    "a length"), LENGTHS)]
+Sides = Annotated[float | tuple[float, ...], checked(_one_or_list(lambda value: number(value, "m"), "an offset"),
+                                                     LENGTHS)]
 
 
 class Line(Part):
-    """A catenary: equal spans of a contact wire that hangs by droppers from a messenger.
+    """A catenary: spans of a contact wire that hangs by droppers from a messenger.
 
-    spans: their number; span: the length of each, in m; height: from the contact wire at the outer droppers up to the
-    messenger at the masts, at rest, in m; support: the vertical stiffness of the messenger's supports, in N/m. stagger:
-    the offset of the contact wire across the track (z) at the first mast, in m, with alternating sides;
+    spans: their number; span: the length of each, in m, or a list of lengths; droppers: of each span, or a list, one
+    `Droppers` for each; height: from the contact wire at the outer droppers up to the messenger at the masts, at rest,
+    in m; support: the vertical stiffness of the messenger's supports, in N/m. stagger: the offset of the contact wire
+    across the track (z) at the first mast, in m, with alternating sides, or a list, one for each mast;
     messenger_stagger: that of the messenger, as the contact wire if not given. Without staggers the line is planar.
     """
 
     spans: Count
-    span: Annotated[float, positive("m")]
+    span: Lengths
     height: Annotated[float, positive("m")]
     contact: Wire
     messenger: Wire
-    droppers: Droppers
+    droppers: Droppers | tuple[Droppers, ...]
     support: Annotated[float, positive("N/m")]
     steady_arm: SteadyArm = SteadyArm()
-    stagger: Annotated[float, finite("m")] = 0.0
-    messenger_stagger: Annotated[float, finite("m")] | None = None
+    stagger: Sides = 0.0
+    messenger_stagger: Sides | None = None
     gravity: Annotated[float, positive("m/s²")] = 9.81
 
     @model_validator(mode="after")
+    def _has_a_value_for_each_span(self) -> Line:
+        for name, count, of in (("span", self.spans, "span"), ("droppers", self.spans, "span"),
+                                ("stagger", self.spans + 1, "mast"), ("messenger_stagger", self.spans + 1, "mast")):
+            value = getattr(self, name)
+            if isinstance(value, tuple) and len(value) != count:
+                raise ValueError(f"has {self.spans} spans, but {len(value)} values of {name}",
+                                 f"give {count}, one for each {of}, or one value")
+        if not any(span.droppers.at for span in self.each):
+            raise ValueError("has no droppers", "give some in one of its spans")
+        for k, span in enumerate(self.each):
+            for j, x in enumerate(span.droppers.at):
+                if not 0 < x < span.length:
+                    raise ValueError(f"dropper {j + 1} of span {k + 1} must hang between its masts, from 0 to "
+                                     f"{show(span.length, 'm')}, got {show(x, 'm')}",
+                                     "count its place from the first mast of the span")
+        return self
+
+    @model_validator(mode="after")
     def _hangs(self) -> Line:
-        first, last = self.droppers.at[0], self.droppers.at[-1]
-        if first <= 0 or last >= self.span:
-            wrong = first if first <= 0 else last
-            raise ValueError(f"droppers must hang between the masts, from 0 to {show(self.span, 'm')}, got one at "
-                             f"{show(wrong, 'm')}")
-        for name, values, mirrored in (
-                ("places", np.array(self.droppers.at), self.span - np.array(self.droppers.at[::-1])),
-                ("sag", self.droppers.depths, self.droppers.depths[::-1])):
-            k = int(np.argmax(np.abs(values - mirrored)))
-            if abs(values[k] - mirrored[k]) > SYMMETRY_TOLERANCE * self.span:
-                raise ValueError(f"droppers must be symmetric about the middle of the span: the {name} of dropper "
-                                 f"{k + 1} is {show(float(values[k]), 'm')}, that of its mirror image "
-                                 f"{show(float(mirrored[k]), 'm')}", "one span is formed, and the others by symmetry")
         strings = self.strings
-        for k, (force, length) in enumerate(zip(strings.forces, strings.distances, strict=True)):
+        names = [(k, j) for k, span in enumerate(self.formed) for j in range(len(span.droppers.at))]
+        depths = np.concatenate([span.droppers.depths for span in self.formed])
+        for at, (k, j) in enumerate(names):
+            force, length = strings.forces[at], strings.distances[at]
+            who = f"dropper {j + 1}" + f" of span {k + 1}" * (len(self.formed) > 1)
             if force <= 0:
-                raise ValueError(f"dropper {k + 1} would have to push with {show(-force, 'N')} to bring the wire "
-                                 f"{show(self.droppers.depths[k], 'm')} below the outer ones",
+                raise ValueError(f"{who} would have to push with {show(-force, 'N')} to bring the wire "
+                                 f"{show(depths[at], 'm')} below the outer ones",
                                  "give a sag that the wire hangs in by its weight, or leave the dropper out")
             if length <= 0:
-                below = self.height - strings.heights[k]
-                raise ValueError(f"dropper {k + 1} would have the length {show(length, 'm')}: the messenger hangs "
+                below = self.height - strings.heights[at]
+                raise ValueError(f"{who} would have the length {show(length, 'm')}: the messenger hangs "
                                  f"{show(below, 'm')} below its supports there",
                                  "raise height or the messenger's tension")
         return self
 
     @cached_property
-    def strings(self) -> AtRest:
-        """Return a span at rest with wires that do not bend."""
-        return _at_rest(self.span, self.height, self.contact, self.messenger, self.droppers, self.gravity)
+    def masts(self) -> tuple[float, ...]:
+        """Return the places of the masts, in m along the track."""
+        if isinstance(self.span, tuple):
+            return tuple(accumulate(self.span, initial=0.0))
+        return tuple(mast * self.span for mast in range(self.spans + 1))
 
     @cached_property
-    def hanging(self) -> tuple[float, ...]:
-        """Return the mass that hangs from the messenger at each dropper, in kg: the dropper and its clamp."""
-        return tuple((self.droppers.messenger_clamp + self.droppers.mass * self.strings.distances).tolist())
+    def each(self) -> tuple[Span, ...]:
+        """Return the spans, one after the other."""
+        lengths = self.span if isinstance(self.span, tuple) else (self.span,) * self.spans
+        droppers = self.droppers if isinstance(self.droppers, tuple) else (self.droppers,) * self.spans
+        return tuple(map(Span, droppers, self.masts, lengths))
+
+    @cached_property
+    def repeats(self) -> bool:
+        """Return whether all spans are equal and symmetric, so that they repeat the form of one."""
+        first = self.each[0]
+        equal = all((span.length, span.droppers) == (first.length, first.droppers) for span in self.each)
+        alternating = all(side == (-1) ** mast * sides[0] for sides in self.sides for mast, side in enumerate(sides))
+        return equal and alternating and first.is_symmetric
 
     @property
-    def staggers(self) -> tuple[float, float]:
-        """Return the offsets of contact wire and messenger across the track at the first mast, in m."""
-        return self.stagger, self.stagger if self.messenger_stagger is None else self.messenger_stagger
+    def formed(self) -> tuple[Span, ...]:
+        """Return the spans whose form is that of the line: the first one if the others repeat it, or all."""
+        return self.each[:1] if self.repeats else self.each
+
+    @cached_property
+    def strings(self) -> AtRest:
+        """Return the formed spans at rest with wires that do not bend."""
+        return _at_rest(self)
+
+    @cached_property
+    def contact_shares(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return where the spans begin along the contact wire, and their lengths, see `shares`."""
+        in_plane = np.tile(self.strings.contact_lengths, self.spans // len(self.formed))
+        return shares(np.hypot(in_plane, np.diff(self.sides[0])))
+
+    @cached_property
+    def hanging(self) -> np.ndarray:
+        """Return the mass that hangs from the messenger at each dropper of the formed spans, in kg: the dropper and
+        its clamp.
+        """
+        own = by_dropper(self.formed, "mass") * self.strings.distances
+        return np.asarray(by_dropper(self.formed, "messenger_clamp") + own)
+
+    @cached_property
+    def sides(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Return the offsets of contact wire and messenger across the track at the masts, in m."""
+        upper = self.stagger if self.messenger_stagger is None else self.messenger_stagger
+        contact, messenger = (each if isinstance(each, tuple) else
+                              tuple((-1) ** mast * each for mast in range(self.spans + 1))
+                              for each in (self.stagger, upper))
+        return contact, messenger
 
     @property
     def planar(self) -> bool:
         """Return whether the line lies in the plane of the track."""
-        return not any(self.staggers)
+        return not any(map(any, self.sides))
 
     @property
     def length(self) -> float:
         """Return the length of all spans, in m."""
-        return self.spans * self.span
+        return self.masts[-1]
 
 
-def _at_rest(span: float, height: float, contact: Wire, messenger: Wire, droppers: Droppers, gravity: float) -> AtRest:
-    """Return a span at rest: the contact wire has the given depths at the droppers, and is level at the masts."""
-    x, depths = np.array(droppers.at), droppers.depths
+def shares(lengths: Sequence[float] | np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return where parts of these lengths begin and where the last one ends, (parts + 1,), and the lengths (parts,).
+
+    All are over the first length: equal parts begin at whole numbers.
+    """
+    over = np.array(lengths) / lengths[0]
+    return np.array([0.0, *accumulate(over.tolist())]), over
+
+
+def by_dropper(spans: Sequence[Span], name: str) -> np.ndarray:
+    """Return an attribute of the droppers of each span, for each of them."""
+    return np.concatenate([np.full(len(span.droppers.at), getattr(span.droppers, name)) for span in spans])
+
+
+def by_span(values: np.ndarray, spans: Sequence[Span]) -> list[np.ndarray]:
+    """Return values of one dropper after the other by span."""
+    return np.split(values, np.cumsum([len(span.droppers.at) for span in spans])[:-1])
+
+
+def _at_rest(line: Line) -> AtRest:
+    """Return spans at rest: the contact wire has the given depths at the droppers, and is level at the outer masts."""
+    spans, contact, messenger = line.formed, line.contact, line.messenger
+    length = spans[-1].start + spans[-1].length
+    x = np.concatenate([span.start + np.array(span.droppers.at) for span in spans])
+    depths = np.concatenate([span.droppers.depths for span in spans])
     gaps = np.diff(x)
-    carried = np.append(x[0], gaps / 2) + np.append(gaps / 2, span - x[-1])
+    carried = np.append(x[0], gaps / 2) + np.append(gaps / 2, length - x[-1])
     slopes = np.concatenate([[0.0], -np.diff(depths) / gaps, [0.0]])
-    forces = gravity * (contact.mass * carried + droppers.contact_clamp) - contact.tension * np.diff(slopes)
-    own, distances = gravity * messenger.mass, np.full(len(x), height)
+    forces = (line.gravity * (contact.mass * carried + by_dropper(spans, "contact_clamp"))
+              - contact.tension * np.diff(slopes))
+    own, distances = line.gravity * messenger.mass, np.full(len(x), line.height)
     for _ in range(3):  # the weight of the droppers, a small part, depends on their lengths
-        loads = forces + gravity * (droppers.messenger_clamp + droppers.mass * distances)
-        heights = height + _deflection(span, messenger.tension, own, x, loads, x)
+        loads = by_span(forces + line.gravity * (by_dropper(spans, "messenger_clamp")
+                                                 + by_dropper(spans, "mass") * distances), spans)
+        heights = line.height + np.concatenate([
+            _deflection(span.length, messenger.tension, own, np.array(span.droppers.at), load, np.array(
+                span.droppers.at)) for span, load in zip(spans, loads, strict=True)])
         distances = heights + depths
-    fine = np.linspace(0, span, 4001)
-    drawn = np.stack([_contact_shape(span, gravity * contact.mass / contact.tension / 2, x, depths, fine),
-                      _deflection(span, messenger.tension, own, x, loads, fine)])
-    lengths = np.hypot(fine[1], np.diff(drawn, axis=1)).sum(axis=1)
-    return AtRest(forces, distances, heights, float(lengths[0]), float(lengths[1]))
+    lengths = []
+    for span, load in zip(spans, loads, strict=True):
+        fine = np.linspace(0, span.length, 4001)
+        drawn = np.stack([
+            _contact_shape(length, line.gravity * contact.mass / contact.tension / 2, x, depths, span.start + fine),
+            _deflection(span.length, messenger.tension, own, np.array(span.droppers.at), load, fine)])
+        lengths.append(np.hypot(fine[1], np.diff(drawn, axis=1)).sum(axis=1))
+    return AtRest(forces, distances, heights, *np.transpose(lengths))
 
 
 def _deflection(span: float, tension: float, own: float, x: np.ndarray, loads: np.ndarray,

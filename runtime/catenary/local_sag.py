@@ -64,6 +64,8 @@ def _stiffness(tension: float, bending: float, nodes: np.ndarray) -> np.ndarray:
 def _shapes(nodes: np.ndarray, at: np.ndarray) -> np.ndarray:
     """Return (at, 2 nodes): the cubic shape functions at these places; none of both ends' positions."""
     shapes = np.zeros((len(at), 2 * len(nodes)))
+    if not len(at):
+        return shapes
     element = np.clip(np.searchsorted(nodes, at, "right") - 1, 0, len(nodes) - 2)
     values = _kernel("on_axis").rows(len(at), np.diff(nodes)[element], at - nodes[element])[0]
     for j in range(4):

@@ -68,7 +68,8 @@ def add_pantograph(scene: Scene, pantograph: Pantograph | JointedPantograph, at:
     wire = scene.cables.get("contact")
     if wire is None:
         raise SceneError("pantograph", 'there is no cable "contact"', "make the scene with funicular.catenary.scene")
-    (begin, level, _), (end, *_) = wire.drawn_through[0], wire.drawn_through[-1]
+    x, y, _ = zip(*wire.drawn_through, strict=True)
+    begin, end = x[0], x[-1]
     if not begin < at < end - END_DISTANCE or not 0 <= speed < np.inf:
         raise SceneError("pantograph", f"at {at:.6g} m with {speed:.6g} m/s does not move along the line",
                          f"begin between {begin:.6g} and {end - END_DISTANCE:.6g} m, with a speed that is not negative")
@@ -79,7 +80,7 @@ def add_pantograph(scene: Scene, pantograph: Pantograph | JointedPantograph, at:
     if "absolute_tol" in settings and not has_tolerance:
         settings["absolute_tol"] = min(settings["absolute_tol"], MAX_ERROR_RATE * settings["duration"])
     stiffness = 1 / (1 / pantograph.contact_stiffness + _missing(wire))
-    height = float(level) - RADIUS
+    height = float(np.interp(at, x, y)) - RADIUS
     if isinstance(pantograph, JointedPantograph):
         _add_jointed(scene, pantograph, (at, height + INITIAL_PENETRATION), speed, name)
     else:

@@ -60,13 +60,13 @@ def _sag(value: Any) -> float | tuple[float, ...]:
 class Droppers(Part):
     """The droppers of a span: springs in tension alone.
 
-    at: m from the mast, increasing. stiffness in N/m, of each; or axial_stiffness EA in N, for a stiffness of EA over
-    the length. sag: depth of the contact wire at each dropper below that at the outer ones, in m; one number: that of a
-    parabola between the outer ones. mass in kg/m; messenger_clamp and contact_clamp in kg. A dropper's own mass is on
-    the messenger, on which a slack one hangs.
+    at: m from the first mast of the span, increasing; none in a span without droppers. stiffness in N/m, of each; or
+    axial_stiffness EA in N, for a stiffness of EA over the length. sag: depth of the contact wire at each dropper below
+    that at the outer ones, in m, negative above it; one number: that of a parabola between the outer ones. mass in
+    kg/m; messenger_clamp and contact_clamp in kg. A dropper's own mass is on the messenger, on which a slack one hangs.
     """
 
-    at: Annotated[tuple[float, ...], list_of("m", least=1)]
+    at: Annotated[tuple[float, ...], list_of("m", least=0)]
     stiffness: Annotated[float, positive("N/m")] | None = None
     axial_stiffness: Annotated[float, positive("N")] | None = None
     sag: Annotated[float | tuple[float, ...], checked(_sag, {"type": ["number", "array"]})] = 0.0
@@ -102,8 +102,10 @@ class Droppers(Part):
         if isinstance(self.sag, tuple):
             return np.array(self.sag)
         x = np.array(self.at)
+        if not self.sag:
+            return np.zeros(len(x))
         middle, half = (x[0] + x[-1]) / 2, (x[-1] - x[0]) / 2
-        return self.sag * (1 - ((x - middle) / half) ** 2) if self.sag else np.zeros(len(x))
+        return np.asarray(self.sag * (1 - ((x - middle) / half) ** 2))
 
 
 class SteadyArm(Part):

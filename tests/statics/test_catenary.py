@@ -6,7 +6,7 @@ import funicular as fu
 import numpy as np
 import pytest
 from funicular import catenary
-from funicular.catenary.form import add_wire
+from funicular.catenary.building import add_wire
 from funicular.catenary.local_sag import mean_missing_compliance, missing_compliance
 from matplotlib.figure import Figure
 
@@ -70,7 +70,7 @@ def test_elements_give_way_less_than_the_wire_by_what_is_said(nodes, at):
     span, tension, bending, stretch = float(nodes[-1]), 20e3, 195.0, 1 + 20e3 / 15e6
     scene = fu.Scene(gravity=(0, 0, 0))
     wire = catenary.Wire(mass=1.35, tension=tension, axial_stiffness=15e6, bending_stiffness=bending)
-    add_wire(scene, "contact", wire, 0.0, span, 0.0, nodes / stretch)
+    add_wire(scene, "contact", wire, [(0.0, 0.0, 0.0), (span, 0.0, 0.0)], nodes / stretch, planar=True)
     for s in (0.0, scene.cables["contact"].length):
         scene.pin("contact", s=s)
     scene.force("contact", s=at / stretch, value=(0, 1.0, 0))
@@ -101,7 +101,7 @@ def test_spans_repeat_the_one_that_was_formed():
             node = int(np.argmin(np.abs(position[:, 0] - 55 * span - x)))
             assert position[node, 1] == pytest.approx(-form.line.droppers.depths[k], abs=1e-7)
             assert float(rest[f"dropper_{span + 1}_{k + 1}.tension"]) == pytest.approx(form.tensions[k], rel=1e-5)
-    assert float(rest["support_1.tension"]) == pytest.approx(form.mast_force, rel=1e-6)
+    assert float(rest["support_1.tension"]) == pytest.approx(form.mast_forces[0], rel=1e-6)
     assert float(rest["arm_1.tension"]) == pytest.approx(0.0, abs=1e-4)
     assert rest["contact@0.force"][0] == pytest.approx(-22e3, rel=2e-6)
 
@@ -110,13 +110,18 @@ def test_spans_are_weighed():
     line = line55()
     form = catenary.form(line)
     hanging = 9.81 * float(9 * (0.195 + 0.165) + 0.117 * form.lengths.sum())
-    assert form.mast_force == pytest.approx(9.81 * 55 * (1.35 + 1.08) + hanging, rel=1e-3)
+    assert form.mast_forces[0] == pytest.approx(9.81 * 55 * (1.35 + 1.08) + hanging, rel=1e-3)
 
 
 @pytest.mark.parametrize(("changes", "says"), [
     ({"droppers": {"at": X[::-1]}}, "dropper 2 is at 44.75 m, dropper 1 at 50.5 m"),
-    ({"droppers": {"at": [0.0, 27.5, 55.0]}}, "between the masts"),
-    ({"droppers": {"at": [5.0, 27.5, 49.0]}}, "symmetric"),
+    ({"droppers": {"at": [0.0, 27.5, 55.0]}}, "dropper 1 of span 1 must hang between its masts, .* got 0 m"),
+    ({"span": [55.0, 50.0]}, "dropper 9 of span 2 must hang between its masts, from 0 to 50 m, got 50.5 m"),
+    ({"span": [55.0]}, "2 spans, but 1 values of span; give 2"),
+    ({"span": [55.0, -50.0]}, "span must be positive, got -50 m"),
+    ({"span": []}, "span must be a length, or a list of them"),
+    ({"stagger": [0.2, -0.2]}, "2 spans, but 2 values of stagger; give 3, one for each mast"),
+    ({"spans": 1, "droppers": {"at": [], "sag": 0.0}}, "no droppers"),
     ({"droppers": {"sag": [0, 0.02, 0.03]}}, "9 places and 3 sags"),
     ({"droppers": {"sag": -0.5}}, "dropper 1 would have to push"),
     ({"droppers": {"sag": 1.0}}, "dropper 2 would have to push"),
