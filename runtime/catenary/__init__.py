@@ -6,8 +6,8 @@ from .jointed import JointedPantograph, Limb
 from .line import Line
 from .pantograph import Pantograph
 from .passing import add_pantograph
-from .wires import Droppers, SteadyArm, Wire, mass_damping
+from .wires import Droppers, End, SteadyArm, Wire, mass_damping
 
-__all__ = ["Droppers", "Form", "JointedPantograph", "Limb", "Line", "Pantograph", "SteadyArm", "Wire", "add_pantograph",
-           "assess", "form", "losses", "low_pass", "mass_damping", "plot_droppers", "plot_force", "plot_uplift",
-           "scene", "uplift"]
+__all__ = ["Droppers", "End", "Form", "JointedPantograph", "Limb", "Line", "Pantograph", "SteadyArm", "Wire",
+           "add_pantograph", "assess", "form", "losses", "low_pass", "mass_damping", "plot_droppers", "plot_force",
+           "plot_uplift", "scene", "uplift"]

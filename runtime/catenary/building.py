@@ -13,7 +13,7 @@ from ..parts.material import Material
 from ..parts.section import GeneralSection
 from ..scene.scene import Scene
 from .line import Line, Span, shares
-from .wires import MODULUS, Wire
+from .wires import MODULUS, End, Wire
 
 DRAWN_SEGMENTS = 16
 """Straight segments of a span of a wire that is not straight, as drawn."""
@@ -57,7 +57,7 @@ def along_contact(line: Line, first: float, span: int, fractions: Any = 0.0) -> 
 def add_wire(scene: Scene, name: str, wire: Wire, masts: Sequence[Point], nodes: np.ndarray, planar: bool) -> None:
     """Add a wire; masts: its points there, in m; nodes: arc-lengths, undeformed, in m; planar: if the scene is."""
     section = {"area": wire.axial_stiffness / MODULUS, "second_moment_about_z": wire.bending_stiffness / MODULUS}
-    density = wire.mass * (1 + wire.tension / wire.axial_stiffness) * MODULUS / wire.axial_stiffness
+    density = wire.mass * wire.stretch * MODULUS / wire.axial_stiffness
     drawn: dict[str, Any] = {"points": _drawn(masts), "rest": "straight"}
     if planar and len({y for _, y, _ in masts}) == 1:
         drawn = {"start": (*masts[0][:2], 0.0), "end": (*masts[-1][:2], 0.0)}
@@ -66,7 +66,8 @@ def add_wire(scene: Scene, name: str, wire: Wire, masts: Sequence[Point], nodes:
     scene.cable(name, nodes=nodes, rest_length=float(nodes[-1]), element="cable8p" if planar else "cable12",
                 strain="engineering", curvature="linear", membrane="reduced", section=GeneralSection(**section),
                 material=Material(youngs_modulus=MODULUS, poisson_ratio=0.3, density=density,
-                                  mass_damping=wire.mass_damping, damping_time=wire.damping_time), **drawn)
+                                  mass_damping=wire.mass_damping, damping_time=wire.damping_time,
+                                  thermal_expansion=wire.thermal_expansion), **drawn)
 
 
 def _drawn(masts: Sequence[Point]) -> list[Point]:
@@ -103,20 +104,30 @@ def add_spans(scene: Scene, line: Line, spans: Sequence[SpanForm], contact_lengt
         _add_droppers(scene, k, each, *(each.tolist() for each in places))
 
 
-def hold_messengers(scene: Scene, spans: int) -> None:
-    """Hold the outer ends of the messengers of all spans, and tie them together at the masts between."""
-    last = f"messenger_{spans}"
-    for name, s in (("messenger_1", 0.0), (last, scene.cables[last].length)):
-        scene.pin(name, s=s)
+def tie_messengers(scene: Scene, spans: int) -> None:
+    """Tie the messengers of all spans together at the masts between, where they turn freely."""
     for k in range(1, spans):
         before = scene.cables[f"messenger_{k}"]
         scene.tie(before, s=before.length, to=f"messenger_{k + 1}", at=0.0, rotation="free")
 
 
-def hold_ends(scene: Scene) -> None:
-    """Hold the ends of the contact wire level and along the track, free to rise."""
-    for s in (0.0, scene.cables["contact"].length):
-        scene.motion("contact", s=s, displacement=(0, "free", 0), rotation=((0, 0, 1), 0))
+def hold_ends(scene: Scene, line: Line, spans: int, ends: Sequence[End]) -> None:
+    """Hold the outer ends of both wires, or let weights pull them: messengers turn freely there.
+
+    ends: at the first and at the last of the masts of all spans.
+    """
+    last = f"messenger_{spans}"
+    for name, s, end, along in (("messenger_1", 0.0, ends[0], -1.0), (last, scene.cables[last].length, ends[1], 1.0)):
+        if end.weights:
+            scene.motion(name, s=s, displacement=("free", 0, 0))
+            scene.force(name, s=s, value=(along * line.messenger.tension, 0, 0))
+        else:
+            scene.pin(name, s=s)
+    for s, end, along in ((0.0, ends[0], -1.0), (scene.cables["contact"].length, ends[1], 1.0)):
+        level: dict[str, Any] = {"rotation": ((0, 0, 1), 0)} if end.height is None else {}
+        scene.motion("contact", s=s, displacement=("free" if end.weights else 0, "free" if level else 0, 0), **level)
+        if end.weights:
+            scene.force("contact", s=s, value=(along * line.contact.tension, 0, 0))
 
 
 def _add_droppers(scene: Scene, k: int, formed: SpanForm, on_messenger: list[float], on_contact: list[float]) -> None:

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..parts.signal import Signal
 from ..scene.scene import Scene
-from .building import SpanForm, add_spans, along_contact, hold_ends, hold_messengers, mesh
+from .building import SpanForm, add_spans, along_contact, hold_ends, mesh, tie_messengers
 from .line import Line, by_span
 from .local_sag import missing_compliance
 
@@ -54,29 +55,32 @@ class Form:
 def form(line: Line, longest: tuple[float, float] = ELEMENT_LENGTHS) -> Form:
     """Return the form of a line. Of equal, symmetric spans one is formed, which the others repeat.
 
-    The contact wire has the line's sags at the droppers and is level at the outer masts, where both wires have their
-    tensions; the messenger turns freely on its supports. longest: length of the longest element of the contact wire,
-    and of the messenger, in m. Raises SceneError; EquilibriumError, where there is no such form.
+    The contact wire has the line's sags at the droppers, and both wires have their tensions at an outer mast; the
+    messenger turns freely on its supports. longest: length of the longest element of the contact wire, and of the
+    messenger, in m. Raises SceneError; EquilibriumError, where there is no such form.
     """
     guess, contact_length = _guess(line, longest)
     scene = Scene(gravity=(0, -line.gravity, 0))
-    stretches = (1 + line.contact.tension / line.contact.axial_stiffness,
-                 1 + line.messenger.tension / line.messenger.axial_stiffness)
-    add_spans(scene, line, guess, contact_length, [0.0] * (len(guess) + 1), longest, stretches)
-    contact_length /= stretches[0]
-    hold_messengers(scene, len(guess))
+    heights = [line.ends[0].height or 0.0, *[0.0] * (len(guess) - 1), line.ends[1].height or 0.0]
+    add_spans(scene, line, guess, contact_length, heights, longest, (line.contact.stretch, line.messenger.stretch))
+    contact_length /= line.contact.stretch
+    tie_messengers(scene, len(guess))
     for mast in range(1, len(guess)):  # as its support holds the messenger, and its steady arm the contact wire
         before = scene.cables[f"messenger_{mast}"]
         scene.motion(before, s=before.length, displacement=("free", 0, 0))
         if not line.planar:
             scene.motion("contact", s=along_contact(line, contact_length, mast), displacement=("free", "free", 0))
-    hold_ends(scene)
-    adjust, to = _targets(line, guess, contact_length)
+    hold_ends(scene, line, len(guess), [end.remade({"weights": False}) for end in line.ends])
+    adjust, to = _targets(scene, line, guess, contact_length)
     return _read(line, longest, guess, scene.equilibrium(adjust=adjust, to=to))
 
 
-def _targets(line: Line, guess: Sequence[SpanForm], contact_length: float) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the lengths to adjust, and the heights, places and tensions to which they are adjusted."""
+def _targets(scene: Scene, line: Line, guess: Sequence[SpanForm], contact_length: float
+             ) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the lengths to adjust, and the heights, places and tensions to which they are adjusted.
+
+    Wires have their tensions at the end with weights, by default at the first one.
+    """
     adjust: dict[str, Any] = {"contact.rest_length": "free"}
     to: dict[str, Any] = {}
     for k, each in enumerate(guess):
@@ -87,7 +91,12 @@ def _targets(line: Line, guess: Sequence[SpanForm], contact_length: float) -> tu
         for j, (s, depth) in enumerate(zip(places.tolist(), each.span.droppers.depths.tolist(), strict=True)):
             adjust[f"dropper_{k + 1}_{j + 1}.length"] = "free"
             to[f"contact@{s:.15g}.position.y"] = -depth
-    to |= {"contact@0.force.x": -line.contact.tension, "messenger_1@0.force.x": -line.messenger.tension}
+    for names, tension in ((("contact",) * 2, line.contact.tension),
+                           (("messenger_1", f"messenger_{len(guess)}"), line.messenger.tension)):
+        if line.ends[1].weights:
+            to[f"{names[1]}@{scene.cables[names[1]].length:.15g}.force.x"] = tension
+        else:
+            to[f"{names[0]}@0.force.x"] = -tension
     return adjust, to
 
 
@@ -148,17 +157,20 @@ def _read_span(line: Line, k: int, longest: tuple[float, float], guess: SpanForm
                     1 / (1 / own + missing))
 
 
-def scene(line: Line | Form, longest: tuple[float, float] = ELEMENT_LENGTHS) -> Scene:
+def scene(line: Line | Form, longest: tuple[float, float] = ELEMENT_LENGTHS, *,
+          temperature: float | Signal | None = None) -> Scene:
     """Return the scene of a formed catenary, x along the track, y up from the contact wire at the outer droppers.
 
     line: or its form, where it is known; longest: as in `form`. The contact wire is "contact", the messenger
     "messenger_1" from the first mast to the second, the droppers "dropper_1_1" and so on, supports and steady arms
-    "support_1" and "arm_0" by their masts. Raises SceneError, EquilibriumError.
+    "support_1" and "arm_0" by their masts. temperature: of the wires above that of the form, in K, a number or signal.
+    Raises SceneError, EquilibriumError.
     """
     formed = form(line, longest) if isinstance(line, Line) else line
-    made = Scene(gravity=(0, -formed.line.gravity, 0))
+    made = Scene(gravity=(0, -formed.line.gravity, 0), temperature=temperature)
     add_spans(made, formed.line, formed.spans, formed.contact_length, formed.heights, formed.longest)
-    hold_ends(made)
+    tie_messengers(made, formed.line.spans)
+    hold_ends(made, formed.line, formed.line.spans, formed.line.ends)
     _add_masts(made, formed)
     return made
 
@@ -166,7 +178,6 @@ def scene(line: Line | Form, longest: tuple[float, float] = ELEMENT_LENGTHS) -> 
 def _add_masts(made: Scene, formed: Form) -> None:
     line, arm = formed.line, formed.line.steady_arm
     of_contact, of_messenger = line.sides
-    hold_messengers(made, line.spans)
     for mast in range(1, line.spans):
         x, z = line.masts[mast], of_messenger[mast]
         before = made.cables[f"messenger_{mast}"]

@@ -14,7 +14,7 @@ from pydantic import model_validator
 from ..parts.part import Part
 from ..parts.schemas import checked, list_schema, number_schema
 from ..parts.validation import Count, items, number, positive, positive_number, show, shown
-from .wires import Droppers, SteadyArm, Wire
+from .wires import Droppers, End, SteadyArm, Wire
 
 SYMMETRY_TOLERANCE = 1e-9
 """Part of the span by which droppers and their mirror images may differ."""
@@ -81,6 +81,7 @@ class Line(Part):
     in m; support: the vertical stiffness of the messenger's supports, in N/m. stagger: the offset of the contact wire
     across the track (z) at the first mast, in m, with alternating sides, or a list, one for each mast;
     messenger_stagger: that of the messenger, as the contact wire if not given. Without staggers the line is planar.
+    ends: of both wires, at the first and at the last mast.
     """
 
     spans: Count
@@ -94,6 +95,7 @@ class Line(Part):
     stagger: Sides = 0.0
     messenger_stagger: Sides | None = None
     gravity: Annotated[float, positive("m/s²")] = 9.81
+    ends: tuple[End, End] = (End(), End())
 
     @model_validator(mode="after")
     def _has_a_value_for_each_span(self) -> Line:
@@ -111,6 +113,9 @@ class Line(Part):
                     raise ValueError(f"dropper {j + 1} of span {k + 1} must hang between its masts, from 0 to "
                                      f"{show(span.length, 'm')}, got {show(x, 'm')}",
                                      "count its place from the first mast of the span")
+        if all(end.weights for end in self.ends):
+            raise ValueError("has weights at both ends, and nothing holds its wires along the track",
+                             "hold them at one end: a line with a fixed point in its middle is two lines")
         return self
 
     @model_validator(mode="after")
@@ -152,7 +157,8 @@ class Line(Part):
         first = self.each[0]
         equal = all((span.length, span.droppers) == (first.length, first.droppers) for span in self.each)
         alternating = all(side == (-1) ** mast * sides[0] for sides in self.sides for mast, side in enumerate(sides))
-        return equal and alternating and first.is_symmetric
+        level = all(end.height is None for end in self.ends)
+        return equal and alternating and level and first.is_symmetric
 
     @property
     def formed(self) -> tuple[Span, ...]:
@@ -218,14 +224,16 @@ def by_span(values: np.ndarray, spans: Sequence[Span]) -> list[np.ndarray]:
 
 
 def _at_rest(line: Line) -> AtRest:
-    """Return spans at rest: the contact wire has the given depths at the droppers, and is level at the outer masts."""
+    """Return spans at rest: the contact wire has the given depths at the droppers, and the given ends."""
     spans, contact, messenger = line.formed, line.contact, line.messenger
     length = spans[-1].start + spans[-1].length
     x = np.concatenate([span.start + np.array(span.droppers.at) for span in spans])
     depths = np.concatenate([span.droppers.depths for span in spans])
-    gaps = np.diff(x)
-    carried = np.append(x[0], gaps / 2) + np.append(gaps / 2, length - x[-1])
-    slopes = np.concatenate([[0.0], -np.diff(depths) / gaps, [0.0]])
+    gaps, to_ends = np.diff(x), (x[0], length - x[-1])
+    outer = [(distance, 0.0) if end.height is None else (distance / 2, (end.height + depth) / distance)
+             for end, distance, depth in zip(line.ends, to_ends, depths[[0, -1]], strict=True)]
+    carried = np.append(outer[0][0], gaps / 2) + np.append(gaps / 2, outer[1][0])
+    slopes = np.concatenate([[-outer[0][1]], -np.diff(depths) / gaps, [outer[1][1]]])
     forces = (line.gravity * (contact.mass * carried + by_dropper(spans, "contact_clamp"))
               - contact.tension * np.diff(slopes))
     own, distances = line.gravity * messenger.mass, np.full(len(x), line.height)
@@ -236,11 +244,14 @@ def _at_rest(line: Line) -> AtRest:
             _deflection(span.length, messenger.tension, own, np.array(span.droppers.at), load, np.array(
                 span.droppers.at)) for span, load in zip(spans, loads, strict=True)])
         distances = heights + depths
-    lengths = []
+    lengths, anchors = [], [end.height for end in line.ends]
+    points = (np.concatenate([[0.0] * (anchors[0] is not None), x, [length] * (anchors[1] is not None)]),
+              np.concatenate([[-each for each in anchors[:1] if each is not None], depths,
+                              [-each for each in anchors[1:] if each is not None]]))
     for span, load in zip(spans, loads, strict=True):
         fine = np.linspace(0, span.length, 4001)
         drawn = np.stack([
-            _contact_shape(length, line.gravity * contact.mass / contact.tension / 2, x, depths, span.start + fine),
+            _contact_shape(length, line.gravity * contact.mass / contact.tension / 2, *points, span.start + fine),
             _deflection(span.length, messenger.tension, own, np.array(span.droppers.at), load, fine)])
         lengths.append(np.hypot(fine[1], np.diff(drawn, axis=1)).sum(axis=1))
     return AtRest(forces, distances, heights, *np.transpose(lengths))

@@ -10,7 +10,7 @@ from pydantic import model_validator
 from ..errors import SceneError
 from ..parts.part import Part
 from ..parts.schemas import checked
-from ..parts.validation import list_of, not_negative, positive, shown, vector
+from ..parts.validation import Flag, finite, list_of, not_negative, positive, shown, vector
 
 MODULUS = 1e11
 """Pa: Young's modulus of wires in scenes; their area follows from it, so that EA, EI and mass are as given."""
@@ -20,7 +20,8 @@ class Wire(Part):
     """A wire under tension.
 
     mass in kg/m, of the wire under its tension; tension in N, horizontal, at rest; axial_stiffness EA in N;
-    bending_stiffness EI in N m²; mass_damping in 1/s and damping_time in s, see `damping_ratio`.
+    bending_stiffness EI in N m²; mass_damping in 1/s and damping_time in s, see `damping_ratio`; thermal_expansion in
+    1/K, for scenes with a temperature.
     """
 
     mass: Annotated[float, positive("kg/m")]
@@ -29,6 +30,12 @@ class Wire(Part):
     bending_stiffness: Annotated[float, positive("N m²")]
     mass_damping: Annotated[float, not_negative("1/s")] = 0.0
     damping_time: Annotated[float, not_negative("s")] = 0.0
+    thermal_expansion: Annotated[float, finite("1/K")] | None = None
+
+    @property
+    def stretch(self) -> float:
+        """Return the length under the tension over the undeformed one."""
+        return 1 + self.tension / self.axial_stiffness
 
     @property
     def wave_speed(self) -> float:
@@ -117,6 +124,18 @@ class SteadyArm(Part):
 
     stiffness: Annotated[float, not_negative("N/m")] = 0.0
     length: Annotated[float, positive("m")] = 1.0
+
+
+class End(Part):
+    """An end of both wires of a line, at its first or last mast.
+
+    weights: whether balance weights pull both wires there with their tensions, at any temperature, and the ends move
+    along the track; else these are held. height: of the anchor of the contact wire, which turns freely there, over the
+    wire at the outer droppers, in m; without it the wire is level there and free to rise, as in a longer line.
+    """
+
+    weights: Flag = False
+    height: Annotated[float, finite("m")] | None = None
 
 
 def mass_damping(ratio: float, frequency: float) -> float:

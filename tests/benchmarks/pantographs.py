@@ -177,7 +177,7 @@ def kinds_rows() -> list[dict]:
     """Return the table of a pantograph with joints, its equivalent masses, and staggers."""
     jointed, level = catenary.JointedPantograph(uplift=120), reference()
     # an arm of this length adds nothing to the vertical stiffness of the model
-    staggered = level.completed({"stagger": 0.2, "steady_arm": catenary.SteadyArm(stiffness=300, length=1e3)})
+    staggered = level.remade({"stagger": 0.2, "steady_arm": catenary.SteadyArm(stiffness=300, length=1e3)})
     rows = []
     for what, line, pantograph in (("arms and hinges", level, jointed), ("its masses", level, jointed.equivalent()),
                                    ("two masses, staggers", staggered, TWO_MASSES)):
