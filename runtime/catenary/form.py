@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..parts.signal import Signal
+from ..errors import SceneError, near
+from ..parts.signal import Ramp, Signal
+from ..parts.spring import Spring
 from ..scene.scene import Scene
 from .building import SpanForm, add_spans, along_contact, hold_ends, mesh, tie_messengers
 from .line import Line, by_span
@@ -19,6 +21,9 @@ if TYPE_CHECKING:
 
 ELEMENT_LENGTHS = 1.0, 1.0
 """Default length of the longest element of the contact wire and of the messenger, in m."""
+
+BREAKING_TIME = 1e-3
+"""s: in which the stiffness of a dropper that breaks falls to zero."""
 
 ARM_LENGTH = 1.0
 """m: distance of supports and steady arms from their fixed points."""
@@ -158,13 +163,14 @@ def _read_span(line: Line, k: int, longest: tuple[float, float], guess: SpanForm
 
 
 def scene(line: Line | Form, longest: tuple[float, float] = ELEMENT_LENGTHS, *,
-          temperature: float | Signal | None = None) -> Scene:
+          temperature: float | Signal | None = None, broken: Mapping[str, float] | None = None) -> Scene:
     """Return the scene of a formed catenary, x along the track, y up from the contact wire at the outer droppers.
 
     line: or its form, where it is known; longest: as in `form`. The contact wire is "contact", the messenger
     "messenger_1" from the first mast to the second, the droppers "dropper_1_1" and so on, supports and steady arms
     "support_1" and "arm_0" by their masts. temperature: of the wires above that of the form, in K, a number or signal.
-    Raises SceneError, EquilibriumError.
+    broken: droppers by name with the time at which each breaks, in s, 0 for one that is missing from the start; their
+    masses stay. Raises SceneError, EquilibriumError.
     """
     formed = form(line, longest) if isinstance(line, Line) else line
     made = Scene(gravity=(0, -formed.line.gravity, 0), temperature=temperature)
@@ -172,7 +178,24 @@ def scene(line: Line | Form, longest: tuple[float, float] = ELEMENT_LENGTHS, *,
     tie_messengers(made, formed.line.spans)
     hold_ends(made, formed.line, formed.line.spans, formed.line.ends)
     _add_masts(made, formed)
+    for name, time in (broken or {}).items():
+        made = _broken(made, name, time)
     return made
+
+
+def _broken(made: Scene, name: str, time: float) -> Scene:
+    """Return a scene whose dropper breaks at a time in s, or is missing if that is 0."""
+    droppers = [each for each in made.point_forces if each.startswith("dropper_")]
+    if name not in droppers:
+        raise SceneError("catenary", f'there is no dropper "{name}" to break', near(name, droppers))
+    if not 0 <= time < np.inf:
+        raise SceneError("catenary", f"{name} cannot break at {time:.6g} s",
+                         "give a time of the run, or 0 for a dropper that is missing")
+    if not time:
+        return made.without(name)
+    dropper = made.point_forces[name]
+    assert isinstance(dropper, Spring) and isinstance(dropper.stiffness, float), f"{name} is a spring"
+    return made.replace(name, stiffness=Ramp(start=time, end=time + BREAKING_TIME, before=dropper.stiffness, after=0.0))
 
 
 def _add_masts(made: Scene, formed: Form) -> None:
