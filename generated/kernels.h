@@ -183,7 +183,7 @@ fu_law_energy_kernel beam24_continuum_curved_energy;
 /* e 6x2, A 166, U 1 */
 fu_law_energy_kernel beam12p_continuum_curved_energy;
 /* elastic energy: l [m]; e [m, 1]; A [N, N m^2, 1, 1/m] -> U [J] */
-/* e 8x3, A 31, U 1 */
+/* e 8x3, A 32, U 1 */
 fu_law_energy_kernel beam24_structural_energy;
 /* e 6x2, A 15, U 1 */
 fu_law_energy_kernel beam12p_structural_energy;
@@ -226,7 +226,7 @@ fu_law_elastic_force_kernel beam24_continuum_curved_elastic_force;
 /* e 6x2, A 166, f 6x2 */
 fu_law_elastic_force_kernel beam12p_continuum_curved_elastic_force;
 /* dU/de, minus the elastic force Q_k: l [m]; e [m, 1]; A [N, N m^2, 1, 1/m] -> f [N, N m] */
-/* e 8x3, A 31, f 8x3 */
+/* e 8x3, A 32, f 8x3 */
 fu_law_elastic_force_kernel beam24_structural_elastic_force;
 /* e 6x2, A 15, f 6x2 */
 fu_law_elastic_force_kernel beam12p_structural_elastic_force;
@@ -269,7 +269,7 @@ fu_law_elastic_tangent_kernel beam24_continuum_curved_elastic_tangent;
 /* e 6x2, A 166, K 12x12 */
 fu_law_elastic_tangent_kernel beam12p_continuum_curved_elastic_tangent;
 /* d2U/de2: l [m]; e [m, 1]; A [N, N m^2, 1, 1/m] -> K [N/m, N, N m] */
-/* e 8x3, A 31, K 24x24 */
+/* e 8x3, A 32, K 24x24 */
 fu_law_elastic_tangent_kernel beam24_structural_elastic_tangent;
 /* e 6x2, A 15, K 12x12 */
 fu_law_elastic_tangent_kernel beam12p_structural_elastic_tangent;
@@ -391,7 +391,7 @@ fu_law_damping_force_kernel beam24_continuum_damping_force;
 fu_law_damping_force_kernel beam12p_continuum_damping_force;
 /* minus the Kelvin-Voigt damping force Q_d: l [m]; e [m, 1]; v [m/s, 1/s]; A [N, N m^2, 1, 1/m]; tau [s] -> f [N, N
  * m] */
-/* e 8x3, v 8x3, A 31, f 8x3 */
+/* e 8x3, v 8x3, A 32, f 8x3 */
 fu_law_damping_force_kernel beam24_structural_damping_force;
 /* e 6x2, v 6x2, A 15, f 6x2 */
 fu_law_damping_force_kernel beam12p_structural_damping_force;
@@ -417,7 +417,7 @@ fu_law_damping_tangent_kernel beam24_continuum_damping_tangent;
 fu_law_damping_tangent_kernel beam12p_continuum_damping_tangent;
 /* df/de + rate df/dv of the damping force f = -Q_d: l [m]; e [m, 1]; v [m/s, 1/s]; A [N, N m^2, 1, 1/m]; tau [s];
  * rate [1/s] -> K [N/m, N, N m] */
-/* e 8x3, v 8x3, A 31, K 24x24 */
+/* e 8x3, v 8x3, A 32, K 24x24 */
 fu_law_damping_tangent_kernel beam24_structural_damping_tangent;
 /* e 6x2, v 6x2, A 15, K 12x12 */
 fu_law_damping_tangent_kernel beam12p_structural_damping_tangent;
@@ -443,7 +443,7 @@ fu_law_dissipation_kernel beam24_continuum_dissipation;
 /* e 6x2, v 6x2, A 31, P 1 */
 fu_law_dissipation_kernel beam12p_continuum_dissipation;
 /* power dissipated by the damping force: l [m]; e [m, 1]; v [m/s, 1/s]; A [N, N m^2, 1, 1/m]; tau [s] -> P [W] */
-/* e 8x3, v 8x3, A 31, P 1 */
+/* e 8x3, v 8x3, A 32, P 1 */
 fu_law_dissipation_kernel beam24_structural_dissipation;
 /* e 6x2, v 6x2, A 15, P 1 */
 fu_law_dissipation_kernel beam12p_structural_dissipation;
@@ -2129,13 +2129,13 @@ void beam12p_continuum_curved_section_forces(fu_real l, fu_real x, const fu_real
     *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 /* constants of the law from the stiffness of the section and the reference: l [m]; e0 [m, 1]; S [N, N m^2] -> A [N,
  * N m^2, 1, 1/m] */
-/* e0 8x3, S 9, A 31 */
+/* e0 8x3, S 10, A 32 */
 void beam24_structural_stiffness(fu_real l, const fu_real *e0, const fu_real *S, fu_real *A);
 /* e0 6x2, S 4, A 15 */
 void beam12p_structural_stiffness(fu_real l, const fu_real *e0, const fu_real *S, fu_real *A);
 /* force and moment resultants of a section: l [m]; x [m]; e [m, 1]; S [N, N m^2]; e0 [m, 1] -> force [N]; moment [N
  * m]; axes [1]; strain [1, 1/m] */
-/* e 8x3, S 9, e0 8x3, force 3, moment 3, axes 3x3, strain 6 */
+/* e 8x3, S 10, e0 8x3, force 3, moment 3, axes 3x3, strain 6 */
 void beam24_structural_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0,
     fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 /* e 4x3, S 2, e0 4x3, force 3, moment 3, axes 3x3, strain 6 */

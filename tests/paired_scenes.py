@@ -456,9 +456,11 @@ def build(row: dict[str, str], folder: Path) -> fu.Scene:
     """Return the scene of a row of levels. Raises FunicularError if it is refused."""
     scene = fu.Scene(gravity=(0, -9.81, 0))
     section, law = SECTIONS[row["section"]], {} if row["law"] == "default" else {"law": row["law"]}
+    helical = (row["element"], row["law"]) == ("beam24", "structural")
     if row["section"] == "general" and row["element"].startswith("beam"):
         section = fu.GeneralSection(area=3e-4, second_moment_about_z=8e-9, torsion_constant=1.5e-8,
-                                    shear_factors=(0.9, 0.9))
+                                    shear_factors=(0.9, 0.9),
+                                    torque_per_tension=1e-3 * helical)
     material = fu.Material(youngs_modulus=1e7, poisson_ratio=0.0, density=1000, thermal_expansion=1e-4,
                            **DAMPING[row["damping"]])
     shape = DRAWN[row["drawn"]] | GROWTH[row["growth"]]

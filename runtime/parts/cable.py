@@ -14,6 +14,7 @@ from .cable_fields import CableFields, library_directory
 from .cable_laws import others, possible_laws
 from .drawn_cable import DrawnCable
 from .hanging import catenary
+from .material import Material
 from .piece import with_elements
 from .section import GeneralSection, Section
 from .section_stiffness import kernel_law
@@ -227,6 +228,7 @@ class Cable(DrawnCable, CableFields):
                 raise ValueError(f'law "{self.law}" needs a poisson_ratio below 0.5, at which Lamé\'s λ is infinite, '
                                  f"got {ratio:.9g}", 'take law="structural", which needs E and G alone')
             (self._check_cable_section if kind.is_cable else self._check_beam_section)(piece.section)
+            self._check_torque(piece.section, piece.material)
         return self
 
     def _check_cable_section(self, section: Section) -> None:
@@ -259,6 +261,18 @@ class Cable(DrawnCable, CableFields):
         elif self.law == "continuum" and given:
             raise ValueError(f'section.{min(given)} is given, but law "continuum" computes its own from the shape',
                              'leave it out, or take law="poisson_split" or "structural"')
+
+    def _check_torque(self, section: Section, material: Material) -> None:
+        """Raise ValueError where the tension of a section cannot make a torque."""
+        if not section.torque_per_tension:
+            return
+        if self.traits.kind != "structural" or self.dim == 2:
+            raise ValueError(f'section.torque_per_tension is given, but the law "{self.law}" of {self.element} has no '
+                             "torque by tension", 'leave it out, or take element="beam24" with law="structural"')
+        EA, GJ = material.youngs_modulus * section.area, material.lame()[1] * section.torsion_constant
+        if not EA * section.torque_per_tension**2 < GJ:
+            raise ValueError(f"section.torque_per_tension must be smaller than √(GJ/EA) = {(GJ / EA) ** 0.5:.6g} m, so "
+                             f"that strain and twist store energy, got {section.torque_per_tension:.6g} m")
 
     def mesh_entries(self, elements: int) -> dict[str, Any]:
         """Return the entries of the cable with another number of elements.

@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 from ..errors import SceneError
 from .part import Family, Part
 from .schemas import checked, list_schema
-from .validation import not_negative, positive, show, vector
+from .validation import finite, not_negative, positive, show, vector
 
 Length = Annotated[float, positive("m")]
 MIN_WALL = 1e-12
@@ -32,6 +32,8 @@ class Section(Part):
 
     torsion_constant: m⁴, in the place of that of the shape
     shear_factors: (ky, kz), in the place of those of the shape
+    torque_per_tension: of helical wires, for element="beam24" with law="structural": torque over tension where the rope
+        cannot turn, m; positive for a right-hand lay. Tension is EA (strain + it twist), torque EA it strain + GJ twist
     """
 
     tag = "shape"
@@ -39,6 +41,7 @@ class Section(Part):
     given_torsion_constant: Annotated[float, positive("m⁴")] | None = Field(None, alias="torsion_constant")
     given_shear_factors: Annotated[tuple[float, float], checked(_factors, list_schema("", 2, 2))] | None = Field(
         None, alias="shear_factors")
+    torque_per_tension: Annotated[float, finite("m")] = 0.0
 
     def moments(self) -> np.ndarray:
         """Return (6,): [∫dA, ∫y²dA, ∫z²dA, ∫y⁴dA, ∫y²z²dA, ∫z⁴dA] in m², m⁴, m⁴, m⁶, m⁶, m⁶."""

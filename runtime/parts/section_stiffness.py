@@ -23,7 +23,7 @@ def section_stiffness(law: str, section: Section, material: Material, dim: int =
     law: of this package, or one of `variants`; dim: 2 for a planar element, else 3. Cables: (2,) [EA, EI], (3,) with an
     assumed axial strain, see `_assumed`, (4,) without stiffness in compression, see `_tension_only`. Continuum: (9, 6),
     planar (4, 6), the integrals over the section of D11, D22, D33, D12, D13, D23, G12, G13, G23 (planar: D11, D22, D12,
-    G12) times 1, y², z², y⁴, y²z², z⁴. Structural: (9,), planar (4,), see `_structural`.
+    G12) times 1, y², z², y⁴, y²z², z⁴. Structural: (10,), planar (4,), see `_structural`.
     """
     if law in variants():
         return variants()[law].stiffness(section, material, dim)
@@ -58,6 +58,11 @@ class _Doubled:
     def torsion_constant(self) -> float:
         """Return its torsion constant in m⁴."""
         return 16.0 * self.section.torsion_constant
+
+    @property
+    def torque_per_tension(self) -> float:
+        """Return its torque per tension in m."""
+        return 2.0 * self.section.torque_per_tension
 
 
 @dataclass(frozen=True)
@@ -163,7 +168,8 @@ def _poisson_split(section: Section, material: Material, dim: int) -> np.ndarray
 
 
 def _structural(section: Section, material: Material, dim: int) -> np.ndarray:
-    """Return EA, GA_y, GA_z, GJ, EI about y and about z, and the stiffness of the strains of height, width and angle.
+    """Return EA, GA_y, GA_z, GJ, EI about y and about z, the stiffness of the strains of height, width and angle, and
+    that of the torque by stretch.
 
     GA includes the shear factors. The strains of the section do not contribute to bending; their stiffness is that of
     the material under uniaxial stress. Planar: EA, GA_y, EI about z, and the stiffness of the height.
@@ -174,7 +180,7 @@ def _structural(section: Section, material: Material, dim: int) -> np.ndarray:
     if dim == 2:
         return np.array([E * area, k_y * G * area, E * yy, E * area])
     return np.array([E * area, k_y * G * area, k_z * G * area, G * section.torsion_constant, E * zz, E * yy,
-                     E * area, E * area, G * area])
+                     E * area, E * area, G * area, E * area * section.torque_per_tension])
 
 
 def _elasticity(material: Material, dim: int) -> np.ndarray:

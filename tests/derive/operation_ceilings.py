@@ -147,8 +147,8 @@ CEILINGS = {
         "discrete_force": 393
     },
     "beam24_structural": {
-        "stiffness": 360, "energy": 533, "elastic_force": 1067, "elastic_tangent": 7419, "damping_force": 1385,
-        "damping_tangent": 13981, "dissipation": 901, "section_forces": 911
+        "stiffness": 360, "energy": 550, "elastic_force": 1084, "elastic_tangent": 7516, "damping_force": 1403,
+        "damping_tangent": 14285, "dissipation": 919, "section_forces": 915
     },
     "beam12p_structural": {
         "stiffness": 133, "energy": 223, "elastic_force": 343, "elastic_tangent": 1266, "damping_force": 452,

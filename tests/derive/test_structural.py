@@ -16,7 +16,7 @@ def rectangle(E, nu, height, width, dim, torsion=None):
     if dim == 2:
         return np.array([E * area, GA, EIz, E * area])
     return np.array([E * area, GA, GA, G * (EIy + EIz) / E if torsion is None else G * torsion, EIy, EIz,
-                     E * area, E * area, G * area])
+                     E * area, E * area, G * area, 0])
 
 
 def arc(radius, angle, n):

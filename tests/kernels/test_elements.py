@@ -73,7 +73,8 @@ class Elastic:
             S = np.outer(D, self.section)
             self.energy_scale = np.abs(kernel(name, "continuum", "stiffness")(self.l, S)).max()
         elif law == "structural":
-            S = area * np.array([1, 0.4, 0.3, 0, 0, 0, 0.8, 0.9, 0.5]) + EI * np.array([0, 0, 0, 0.6, 0.7, 1, 0, 0, 0])
+            S = np.array([area, 0.4 * area, 0.3 * area, 0.6 * EI, 0.7 * EI, EI, 0.8 * area, 0.9 * area, 0.5 * area,
+                          0.1 * np.sqrt(area * EI)])
             S = S if self.element.dim == 3 else S[[0, 1, 5, 6]]
         else:
             S = cable_stiffness(law, area, EI)

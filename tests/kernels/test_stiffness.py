@@ -72,8 +72,8 @@ def test_cables_take_axial_and_bending_stiffness():
 def test_structural_beams_take_what_the_section_says():
     """∫z²dA is the second moment of bending about y, ∫y²dA of bending about z."""
     section = GeneralSection(area=2, second_moment_about_z=3, second_moment_about_y=4, torsion_constant=5,
-                             shear_factors=(0.5, 0.6))
+                             shear_factors=(0.5, 0.6), torque_per_tension=0.1)
     material = Material(youngs_modulus=26, poisson_ratio=0.3, density=1)  # G = 10
     S = section_stiffness("structural", section, material)
-    np.testing.assert_allclose(S, [52, 10, 12, 50, 104, 78, 52, 52, 20], rtol=1e-14)
+    np.testing.assert_allclose(S, [52, 10, 12, 50, 104, 78, 52, 52, 20, 5.2], rtol=1e-14)
     np.testing.assert_allclose(section_stiffness("structural", section, material, dim=2), [52, 10, 78, 52], rtol=1e-14)

@@ -151,8 +151,7 @@ class Kernels:
         across = [p.vector(f"across{i + 1}", cross(turn, unit)) for i, unit in enumerate(np.eye(3, dtype=int))]
         axes = np.array([p.vector(f"t{i + 1}", frame[i] + (twice * (c + cross(turn, c))).dot(frame))
                          for i, c in enumerate(across)])
-        stiffness = self.law.spatial_stiffness(S)
-        resultant = [p.define(f"N{i + 1}", k * s) for i, (k, s) in enumerate(zip(stiffness, strain, strict=True))]
+        resultant = [p.define(f"N{i + 1}", r) for i, r in enumerate(self.law.at_section(S, strain))]
         p.output("force", np.array(resultant[:3]).dot(axes), "N", "resultant of the stress, global axes")
         p.output("moment", np.array(resultant[3:]).dot(axes), "N m", "its moment about the axis, global axes")
         p.output("axes", axes, "1", "rows: normal of the section t1, t2 along r_y, t3 = t1 x t2, turned by the bubble")

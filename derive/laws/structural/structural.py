@@ -21,7 +21,8 @@ for the bubble's bending alone; with s it is as stable as a string. The shears h
 bubble's angle by twice the tangent of its half, for its sine would let a chord turn back and rest there.
 
 Strains are counted from those of a reference e0, which may be curved; x is its arc-length. Section constants of order:
-EA, GA_y, GA_z, GJ, EI_yy, EI_zz, and stiffness against r_y.r_y, r_z.r_z, r_y.r_z; planar EA, GA, EI, r_y.r_y.
+EA, GA_y, GA_z, GJ, EI_yy, EI_zz, stiffness against r_y.r_y, r_z.r_z, r_y.r_z, and EA_t of the torque that goes with
+stretch and the tension that goes with twist, as in ropes of helical wires; planar EA, GA, EI, r_y.r_y.
 """
 
 from __future__ import annotations
@@ -55,6 +56,7 @@ def _mean(f: sp.Expr) -> sp.Expr:
     return sp.integrate(sp.expand(f), (X, -1, 1)) / 2
 
 
+MEAN = [_mean(f) for f in LAGRANGE]
 QUADRATIC = sp.Matrix(3, 3, lambda i, j: _mean(LAGRANGE[i] * LAGRANGE[j]))
 BUBBLE_WITH_STRAIN = [_mean(f * BUBBLE) for f in LAGRANGE]
 BUBBLE_SQUARED = _mean(BUBBLE**2)
@@ -83,13 +85,14 @@ class Structural:
         self.spins = range(3) if element.dim == 3 else (2,)
         self.across = ((1, 1), (2, 2), (1, 2)) if element.dim == 3 else ((1, 1),)
         self.shears = self.axes[1:]
+        self.couplings = range(int(element.dim == 3))  # of stretch and twist
 
     # --- constants ------------------------------------------------------------------------------------------
 
     @property
     def n_section(self) -> int:
         """Return the length of S."""
-        return len(self.axes) + len(self.spins) + len(self.across)
+        return len(self.axes) + len(self.spins) + len(self.across) + len(self.couplings)
 
     @property
     def n_stiffness(self) -> int:
@@ -113,7 +116,7 @@ class Structural:
         if self.element.dim == 3:
             return program.input("S", self.n_section, "N, N m^2",
                                  "section stiffness: EA, GA_y, GA_z, GJ, EI_yy, EI_zz; against r_y.r_y/2, r_z.r_z/2, "
-                                 "r_y.r_z")
+                                 "r_y.r_z; EA_t, torque by stretch and tension by twist")
         return program.input("S", self.n_section, "N, N m^2", "section stiffness: EA, GA, EI; against r_y.r_y/2")
 
     def constants(self, program: Program) -> np.ndarray:
@@ -193,6 +196,11 @@ class Structural:
             at = [strains[3 * n + m + node * len(self.across) + p] for node in range(2)]
             for node in range(2):
                 found[3 * n + m + node * len(self.across) + p] = stiffness[n + m + p] * _times(LINEAR.row(node), at)
+        for k in self.couplings:
+            coupling = stiffness[self.n_section - 1 - k]
+            for place in range(3):
+                found[place * n] += coupling * MEAN[place] * strains[3 * n + k]
+            found[3 * n + k] += coupling * _times(MEAN, strains[:3 * n:n])
         return found
 
     def at(self, program: Program, S: np.ndarray, length: sp.Expr, at: sp.Expr,
@@ -216,9 +224,14 @@ class Structural:
                 turn[3 - i] = program.define(f"turn_{3 - i + 1}", sign * bubble * BUBBLE.subs(X, at) / 2)
         return [program.define(f"at_{'ek'[i // 3]}{i % 3 + 1}", f) for i, f in enumerate(found)], turn
 
-    def spatial_stiffness(self, S: Sequence[sp.Expr] | np.ndarray) -> list[sp.Expr]:
-        """Return EA, GA_y, GA_z, GJ, EI_yy, EI_zz; of a planar element those that it has."""
-        return list(S[:6]) if self.element.dim == 3 else [S[0], S[1], *[sp.S.Zero] * 3, S[2]]
+    def at_section(self, S: Sequence[sp.Expr] | np.ndarray, strain: Sequence[sp.Expr]) -> list[sp.Expr]:
+        """Return tension, shear forces, torque and bending moments from the strains `at` a section."""
+        stiffness = S[:6] if self.element.dim == 3 else [S[0], S[1], *[sp.S.Zero] * 3, S[2]]
+        found = [k * s for k, s in zip(stiffness, strain, strict=True)]
+        for k in self.couplings:
+            coupling = S[self.n_section - 1 - k]
+            found[0], found[3] = found[0] + coupling * strain[3], found[3] + coupling * strain[0]
+        return found
 
     @property
     def director_shapes(self) -> list[sp.Expr]:

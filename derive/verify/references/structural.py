@@ -41,7 +41,7 @@ def section(element: Element, law: str, s: Any) -> dict[str, np.ndarray]:
     l, at = s["l"].item(), 2 * s["x"].item() / s["l"].item() - 1
     now, before = (_strains(element, s["S"], l, s[name]) for name in ("e", "e0"))
     strains = {name: now[name] - before[name] for name in now}
-    EA, GAy, GAz, GJ, EIyy, EIzz, *_ = _spatial_stiffness(s["S"])
+    EA, GAy, GAz, GJ, EIyy, EIzz, *_, coupling = _spatial_stiffness(s["S"])
     here = [_interpolated(strains["along"][:, axis])(at) for axis in range(3)] + list(strains["curvature"])
     gibbs = np.array([mp.mpf(0)] * 3)
     for axis, shear, bending, sign in ((1, GAy, EIzz, 1), (2, GAz, EIyy, -1)):
@@ -56,6 +56,8 @@ def section(element: Element, law: str, s: Any) -> dict[str, np.ndarray]:
     turn = gibbs if size == 0 else gibbs * 2 * mp.atan(size) / size
     axes = _frame(F[:, 1], F[:, 2]).dot(_rotation(turn)).T
     local = np.array([k * strain for k, strain in zip((EA, GAy, GAz, GJ, EIyy, EIzz), here, strict=True)])
+    local[0] += coupling * here[3]
+    local[3] += coupling * here[0]
     return {"force": axes.T.dot(local[:3]), "moment": axes.T.dot(local[3:]), "axes": axes, "strain": np.array(here)}
 
 
@@ -96,18 +98,19 @@ def _half_way(r: np.ndarray, S: np.ndarray, l) -> np.ndarray:
 
 def _spatial_stiffness(S: np.ndarray):
     """Return the stiffness in space; a planar section leaves the third direction at rest."""
-    if len(S) == 9:
+    if len(S) == 10:
         return S
     EA, GAy, EIzz, thickness = S
     zero = mp.mpf(0)
-    return EA, GAy, zero, zero, zero, EIzz, thickness, zero, zero
+    return EA, GAy, zero, zero, zero, EIzz, thickness, zero, zero, zero
 
 
 def _form(S: np.ndarray, l, strains: dict[str, np.ndarray]):
     """Return twice the energy of these strains."""
-    EA, GAy, GAz, GJ, EIyy, EIzz, *across = _spatial_stiffness(S)
+    EA, GAy, GAz, GJ, EIyy, EIzz, *across, coupling = _spatial_stiffness(S)
     along, kappa = strains["along"], strains["curvature"]
     total = EA * _square(_interpolated(along[:, 0])) + GJ * kappa[0] ** 2
+    total += 2 * coupling * _mean(_interpolated(along[:, 0])) * kappa[0]
     for k, at in zip(across, strains["across"].T, strict=True):
         total += k * _square(lambda t, at=at: ((1 - t) * at[0] + (1 + t) * at[1]) / 2)
     for axis, shear, bending, sign in ((1, GAy, EIzz, 1), (2, GAz, EIyy, -1)):
@@ -137,7 +140,12 @@ def _interpolated(at: np.ndarray) -> Callable[..., Any]:
 
 def _square(f: Callable[..., Any]):
     """Return the mean of f^2 over [-1, 1]."""
-    return sum(weight * f(t) ** 2 for t, weight in gauss(5)) / 2
+    return _mean(lambda t: f(t) ** 2)
+
+
+def _mean(f: Callable[..., Any]):
+    """Return the mean of f over [-1, 1]."""
+    return sum(weight * f(t) for t, weight in gauss(5)) / 2
 
 
 def _spatial(F: np.ndarray) -> np.ndarray:

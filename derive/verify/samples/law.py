@@ -56,7 +56,7 @@ def section_stiffness(traits: LawTraits, dim: int, moments: np.ndarray,
     alone.
     """
     if traits.kind == "structural":
-        return {"S": random.uniform(1, 4, 9 if dim == 3 else 4)}
+        return {"S": np.array([*random.uniform(1, 4, 9), 0.5]) if dim == 3 else random.uniform(1, 4, 4)}
     if traits.kind == "cable":
         S = 53.0 * moments[:2]
         more = {"assumed": [0.6 * S[0]], "tension_only": [0.2, 0.1]}.get(traits.membrane, [])
