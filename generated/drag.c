@@ -180,7 +180,7 @@
         d_wet0_G_t_y = d_wet0_pull*(i_y*w_t - w_y), \
         d_wet0_G_t_z = d_wet0_pull*(i_z*w_t - w_z);
 
-/* part of impulse, its rate and moment: of drag_inertia_of_point and 1 more */
+/* part of impulse, its rate and moment: of drag_inertia_of_point and 2 more */
 #define DRAG_PART_OF_IMPULSE_ITS_RATE_AND_MOMENT \
     const fu_real \
         P_x = M_x[0]*w_x + M_y[0]*w_y + M_z[0]*w_z, \
@@ -192,6 +192,52 @@
         P_rate_x = M_x[0]*rest_x + M_y[0]*rest_y + M_z[0]*rest_z - P_y*omega[2] + P_z*omega[1], \
         P_rate_y = M_x[1]*rest_x + M_y[1]*rest_y + M_z[1]*rest_z + P_x*omega[2] - P_z*omega[0], \
         P_rate_z = M_x[2]*rest_x + M_y[2]*rest_y + M_z[2]*rest_z - P_x*omega[1] + P_y*omega[0];
+
+/* part of derivatives: of drag_inertia_of_point_tangent and 1 more */
+#define DRAG_PART_OF_DERIVATIVES_10 \
+    const fu_real \
+        d_th1_CM1_y = -A[6]*C[0] - A[7]*C[1] - A[8]*C[2], \
+        d_th1_CM2_y = -A[6]*C[3] - A[7]*C[4] - A[8]*C[5], \
+        d_th1_CM3_y = -A[6]*C[6] - A[7]*C[7] - A[8]*C[8], \
+        d_th1_M1_y = A[0]*d_th1_CM1_y + A[1]*d_th1_CM2_y + A[2]*d_th1_CM3_y, \
+        d_th1_CM1_z = A[3]*C[0] + A[4]*C[1] + A[5]*C[2], \
+        d_th1_CM2_z = A[3]*C[3] + A[4]*C[4] + A[5]*C[5], \
+        d_th1_CM3_z = A[3]*C[6] + A[4]*C[7] + A[5]*C[8], \
+        d_th1_M1_z = A[0]*d_th1_CM1_z + A[1]*d_th1_CM2_z + A[2]*d_th1_CM3_z;
+
+/* part of derivatives: of drag_inertia_of_point_tangent and 1 more */
+#define DRAG_PART_OF_DERIVATIVES_11 \
+    const fu_real \
+        d_th1_M2_x = -A[6]*CM_x[0] - A[7]*CM_x[1] - A[8]*CM_x[2], \
+        d_th1_M2_y = A[3]*d_th1_CM1_y + A[4]*d_th1_CM2_y + A[5]*d_th1_CM3_y - A[6]*CM_y[0] - A[7]*CM_y[1] - A[8]*CM_y[2], \
+        d_th1_M2_z = A[3]*d_th1_CM1_z + A[4]*d_th1_CM2_z + A[5]*d_th1_CM3_z - A[6]*CM_z[0] - A[7]*CM_z[1] - A[8]*CM_z[2];
+
+/* part of derivatives: of drag_inertia_of_point_tangent and 1 more */
+#define DRAG_PART_OF_DERIVATIVES_12 \
+    const fu_real \
+        d_th1_M3_x = A[3]*CM_x[0] + A[4]*CM_x[1] + A[5]*CM_x[2], \
+        d_th1_M3_y = A[3]*CM_y[0] + A[4]*CM_y[1] + A[5]*CM_y[2] + A[6]*d_th1_CM1_y + A[7]*d_th1_CM2_y + A[8]*d_th1_CM3_y, \
+        d_th1_M3_z = A[3]*CM_z[0] + A[4]*CM_z[1] + A[5]*CM_z[2] + A[6]*d_th1_CM1_z + A[7]*d_th1_CM2_z + A[8]*d_th1_CM3_z;
+
+/* part of derivatives: of drag_inertia_of_point_tangent and 1 more */
+#define DRAG_PART_OF_DERIVATIVES_13 \
+    const fu_real \
+        d_th2_CM1_x = A[6]*C[0] + A[7]*C[1] + A[8]*C[2], \
+        d_th2_CM2_x = A[6]*C[3] + A[7]*C[4] + A[8]*C[5], \
+        d_th2_CM3_x = A[6]*C[6] + A[7]*C[7] + A[8]*C[8], \
+        d_th2_M1_x = A[0]*d_th2_CM1_x + A[1]*d_th2_CM2_x + A[2]*d_th2_CM3_x + A[6]*CM_x[0] + A[7]*CM_x[1] + A[8]*CM_x[2], \
+        d_th2_M1_y = A[6]*CM_y[0] + A[7]*CM_y[1] + A[8]*CM_y[2], \
+        d_th2_CM1_z = -A[0]*C[0] - A[1]*C[1] - A[2]*C[2], \
+        d_th2_CM2_z = -A[0]*C[3] - A[1]*C[4] - A[2]*C[5], \
+        d_th2_CM3_z = -A[0]*C[6] - A[1]*C[7] - A[2]*C[8], \
+        d_th2_M1_z = A[0]*d_th2_CM1_z + A[1]*d_th2_CM2_z + A[2]*d_th2_CM3_z + A[6]*CM_z[0] + A[7]*CM_z[1] + A[8]*CM_z[2];
+
+/* part of derivatives: of drag_inertia_of_point_tangent and 1 more */
+#define DRAG_PART_OF_DERIVATIVES_14 \
+    const fu_real \
+        d_th2_M3_x = -A[0]*CM_x[0] - A[1]*CM_x[1] - A[2]*CM_x[2] + A[6]*d_th2_CM1_x + A[7]*d_th2_CM2_x + A[8]*d_th2_CM3_x, \
+        d_th2_M3_y = -A[0]*CM_y[0] - A[1]*CM_y[1] - A[2]*CM_y[2], \
+        d_th2_M3_z = -A[0]*CM_z[0] - A[1]*CM_z[1] - A[2]*CM_z[2] + A[6]*d_th2_CM1_z + A[7]*d_th2_CM2_z + A[8]*d_th2_CM3_z;
 
 /* outputs: of drag_along_cable and 1 more */
 #define DRAG_OUTPUTS \
@@ -238,7 +284,7 @@
     FU_EACH(row, 3, P[row] = -i[row]*less*w_t + m[0]*w[row];) \
     FU_EACH(row, 3, P_rate[row] = -less*(i_rate[row]*w_t + i[row]*w_t_rate) + m[0]*w_rate[row];)
 
-/* motion past the fluid: of drag_inertia_of_cable_tangent and 2 more */
+/* motion past the fluid: of drag_inertia_of_cable_tangent and 5 more */
 #define DRAG_MOTION_PAST_THE_FLUID \
     const fu_real \
         w_x = -U[0] + v[0], \
@@ -254,7 +300,7 @@
         c_place_y = up[1]*wet[1], \
         c_place_z = up[2]*wet[1];
 
-/* tangent and its rate: of drag_inertia_of_cable_tangent and 1 more */
+/* tangent and its rate: of drag_inertia_of_cable_tangent and 2 more */
 #define DRAG_TANGENT_AND_ITS_RATE_2 \
     const fu_real \
         less = m[0] - m[1], \
@@ -267,7 +313,7 @@
         i_rate_y = inv_len_t*(-i_y*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[1]), \
         i_rate_z = inv_len_t*(-i_z*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[2]);
 
-/* impulse and its rate: of drag_inertia_of_cable_tangent and 1 more */
+/* impulse and its rate: of drag_inertia_of_cable_tangent and 2 more */
 #define DRAG_IMPULSE_AND_ITS_RATE_2 \
     const fu_real \
         w_t = i_x*w_x + i_y*w_y + i_z*w_z, \
@@ -279,7 +325,7 @@
         P_rate_y = -less*(i_rate_y*w_t + i_y*w_t_rate) + m[0]*w_rate_y, \
         P_rate_z = -less*(i_rate_z*w_t + i_z*w_t_rate) + m[0]*w_rate_z;
 
-/* added mass: of drag_impulse_of_point and 2 more */
+/* added mass: of drag_impulse_of_point and 4 more */
 #define DRAG_ADDED_MASS \
     fu_real CM_x[3], CM_y[3], CM_z[3], M_x[3], M_y[3], M_z[3]; \
     FU_EACH(g, 3, \
@@ -290,6 +336,10 @@
         M_x[g] = A[3*g]*CM_x[0] + A[3*g + 1]*CM_x[1] + A[3*g + 2]*CM_x[2]; \
         M_y[g] = A[3*g]*CM_y[0] + A[3*g + 1]*CM_y[1] + A[3*g + 2]*CM_y[2]; \
         M_z[g] = A[3*g]*CM_z[0] + A[3*g + 1]*CM_z[1] + A[3*g + 2]*CM_z[2];)
+
+/* impulse, its rate and moment: of drag_inertia_of_point_tangent and 1 more */
+#define DRAG_IMPULSE_ITS_RATE_AND_MOMENT \
+    DRAG_PART_OF_IMPULSE_ITS_RATE_AND_MOMENT
 
 /* drag a length of a cable, and its derivatives; 104 add, 245 mul, 3 div, 3 sqrt */
 FU_KERNEL void drag_along_cable(const fu_real *t, const fu_real *w, const fu_real *c, fu_real *f, fu_real *f_t, fu_real *f_w)
@@ -1904,8 +1954,7 @@ void drag_inertia_of_point_tangent(const fu_real *A, const fu_real *C, const fu_
 {
     DRAG_ADDED_MASS
     DRAG_MOTION_PAST_THE_FLUID
-    /* impulse, its rate and moment */
-    DRAG_PART_OF_IMPULSE_ITS_RATE_AND_MOMENT
+    DRAG_IMPULSE_ITS_RATE_AND_MOMENT
     /* force on the particle */
     const fu_real
         c_rate = c_place_x*v[0] + c_place_y*v[1] + c_place_z*v[2],
@@ -1913,23 +1962,10 @@ void drag_inertia_of_point_tangent(const fu_real *A, const fu_real *C, const fu_
         T = 0.5*P_x*w_x + 0.5*P_y*w_y + 0.5*P_z*w_z;
     /* derivatives */
     fu_real d_th_P_y[3], d_th_P_z[3], d_th_P_x[3], d_th_moment0[3], d_th_moment1[3], d_th_moment2[3];
-    const fu_real
-        d_th1_CM1_y = -A[6]*C[0] - A[7]*C[1] - A[8]*C[2],
-        d_th1_CM2_y = -A[6]*C[3] - A[7]*C[4] - A[8]*C[5],
-        d_th1_CM3_y = -A[6]*C[6] - A[7]*C[7] - A[8]*C[8],
-        d_th1_M1_y = A[0]*d_th1_CM1_y + A[1]*d_th1_CM2_y + A[2]*d_th1_CM3_y,
-        d_th1_CM1_z = A[3]*C[0] + A[4]*C[1] + A[5]*C[2],
-        d_th1_CM2_z = A[3]*C[3] + A[4]*C[4] + A[5]*C[5],
-        d_th1_CM3_z = A[3]*C[6] + A[4]*C[7] + A[5]*C[8],
-        d_th1_M1_z = A[0]*d_th1_CM1_z + A[1]*d_th1_CM2_z + A[2]*d_th1_CM3_z,
-        d_th1_M2_x = -A[6]*CM_x[0] - A[7]*CM_x[1] - A[8]*CM_x[2],
-        d_th1_M2_y = A[3]*d_th1_CM1_y + A[4]*d_th1_CM2_y + A[5]*d_th1_CM3_y - A[6]*CM_y[0] - A[7]*CM_y[1] - A[8]*CM_y[2],
-        d_th1_M2_z = A[3]*d_th1_CM1_z + A[4]*d_th1_CM2_z + A[5]*d_th1_CM3_z - A[6]*CM_z[0] - A[7]*CM_z[1] - A[8]*CM_z[2];
+    DRAG_PART_OF_DERIVATIVES_10
+    DRAG_PART_OF_DERIVATIVES_11
     d_th_P_y[0] = d_th1_M2_x*w_x + d_th1_M2_y*w_y + d_th1_M2_z*w_z;
-    const fu_real
-        d_th1_M3_x = A[3]*CM_x[0] + A[4]*CM_x[1] + A[5]*CM_x[2],
-        d_th1_M3_y = A[3]*CM_y[0] + A[4]*CM_y[1] + A[5]*CM_y[2] + A[6]*d_th1_CM1_y + A[7]*d_th1_CM2_y + A[8]*d_th1_CM3_y,
-        d_th1_M3_z = A[3]*CM_z[0] + A[4]*CM_z[1] + A[5]*CM_z[2] + A[6]*d_th1_CM1_z + A[7]*d_th1_CM2_z + A[8]*d_th1_CM3_z;
+    DRAG_PART_OF_DERIVATIVES_12
     d_th_P_z[0] = d_th1_M3_x*w_x + d_th1_M3_y*w_y + d_th1_M3_z*w_z;
     const fu_real d_th1_P_rate_x = d_th1_M1_y*rest_y + d_th1_M1_z*rest_z - d_th_P_y[0]*omega[2] + d_th_P_z[0]*omega[1];
     d_th_P_x[0] = d_th1_M1_y*w_y + d_th1_M1_z*w_z;
@@ -1948,23 +1984,13 @@ void drag_inertia_of_point_tangent(const fu_real *A, const fu_real *C, const fu_
         d_th1_P_rate_z = d_th1_M3_x*rest_x + d_th1_M3_y*rest_y + d_th1_M3_z*rest_z - d_th_P_x[0]*omega[1] + d_th_P_y[0]*omega[0],
         d_th1_P_wet_rate_z = c_rate*d_th_P_z[0] + d_th1_P_rate_z*wet[0],
         d_th1_strained_z = G[2]*d_th1_P_wet_x + G[5]*d_th1_P_wet_y + G[8]*d_th1_P_wet_z,
-        d_th1_F_z = -c_place_z*d_th1_T + d_th1_P_wet_rate_z + d_th1_strained_z,
-        d_th2_CM1_x = A[6]*C[0] + A[7]*C[1] + A[8]*C[2],
-        d_th2_CM2_x = A[6]*C[3] + A[7]*C[4] + A[8]*C[5],
-        d_th2_CM3_x = A[6]*C[6] + A[7]*C[7] + A[8]*C[8],
-        d_th2_M1_x = A[0]*d_th2_CM1_x + A[1]*d_th2_CM2_x + A[2]*d_th2_CM3_x + A[6]*CM_x[0] + A[7]*CM_x[1] + A[8]*CM_x[2],
-        d_th2_M1_y = A[6]*CM_y[0] + A[7]*CM_y[1] + A[8]*CM_y[2],
-        d_th2_CM1_z = -A[0]*C[0] - A[1]*C[1] - A[2]*C[2],
-        d_th2_CM2_z = -A[0]*C[3] - A[1]*C[4] - A[2]*C[5],
-        d_th2_CM3_z = -A[0]*C[6] - A[1]*C[7] - A[2]*C[8],
-        d_th2_M1_z = A[0]*d_th2_CM1_z + A[1]*d_th2_CM2_z + A[2]*d_th2_CM3_z + A[6]*CM_z[0] + A[7]*CM_z[1] + A[8]*CM_z[2],
+        d_th1_F_z = -c_place_z*d_th1_T + d_th1_P_wet_rate_z + d_th1_strained_z;
+    DRAG_PART_OF_DERIVATIVES_13
+    const fu_real
         d_th2_M2_x = A[3]*d_th2_CM1_x + A[4]*d_th2_CM2_x + A[5]*d_th2_CM3_x,
         d_th2_M2_z = A[3]*d_th2_CM1_z + A[4]*d_th2_CM2_z + A[5]*d_th2_CM3_z;
     d_th_P_y[1] = d_th2_M2_x*w_x + d_th2_M2_z*w_z;
-    const fu_real
-        d_th2_M3_x = -A[0]*CM_x[0] - A[1]*CM_x[1] - A[2]*CM_x[2] + A[6]*d_th2_CM1_x + A[7]*d_th2_CM2_x + A[8]*d_th2_CM3_x,
-        d_th2_M3_y = -A[0]*CM_y[0] - A[1]*CM_y[1] - A[2]*CM_y[2],
-        d_th2_M3_z = -A[0]*CM_z[0] - A[1]*CM_z[1] - A[2]*CM_z[2] + A[6]*d_th2_CM1_z + A[7]*d_th2_CM2_z + A[8]*d_th2_CM3_z;
+    DRAG_PART_OF_DERIVATIVES_14
     d_th_P_z[1] = d_th2_M3_x*w_x + d_th2_M3_y*w_y + d_th2_M3_z*w_z;
     const fu_real d_th2_P_rate_x = d_th2_M1_x*rest_x + d_th2_M1_y*rest_y + d_th2_M1_z*rest_z - d_th_P_y[1]*omega[2] + d_th_P_z[1]*omega[1];
     d_th_P_x[1] = d_th2_M1_x*w_x + d_th2_M1_y*w_y + d_th2_M1_z*w_z;
@@ -2274,6 +2300,291 @@ void drag_inertia_of_point_step(const fu_real *A, const fu_real *A_next, const f
     more[0] = 0.25*theta[1]*turning[2] - 0.25*theta[2]*turning[1];
     more[1] = -0.25*theta[0]*turning[2] + 0.25*theta[2]*turning[0];
     more[2] = 0.25*theta[0]*turning[1] - 0.25*theta[1]*turning[0];
+}
+#endif
+
+/* force of the inertia of the fluid on a length of cable by Morison's equation; 82 add, 116 mul, 1 div, 1 sqrt */
+FU_KERNEL void drag_morison_of_cable(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *g, fu_real *power)
+{
+    DRAG_MOTION_PAST_THE_FLUID
+    DRAG_TANGENT_AND_ITS_RATE_2
+    DRAG_IMPULSE_AND_ITS_RATE_2
+    /* force on the particle */
+    const fu_real
+        past_rate_x = G[0]*w_x + G[1]*w_y + G[2]*w_z + w_rate_x,
+        past_rate_y = G[3]*w_x + G[4]*w_y + G[5]*w_z + w_rate_y,
+        past_rate_z = G[6]*w_x + G[7]*w_y + G[8]*w_z + w_rate_z,
+        less_x_t = less*(i_x*past_rate_x + i_y*past_rate_y + i_z*past_rate_z),
+        F_x = wet[0]*(-displaced*material_x - i_x*less_x_t + m[0]*past_rate_x),
+        F_y = wet[0]*(-displaced*material_y - i_y*less_x_t + m[0]*past_rate_y),
+        F_z = wet[0]*(-displaced*material_z - i_z*less_x_t + m[0]*past_rate_z),
+        c_rate = c_place_x*v[0] + c_place_y*v[1] + c_place_z*v[2];
+    /* outputs */
+    f[0] = F_x;
+    f[1] = F_y;
+    f[2] = F_z;
+    g[0] = FU_NUMBER(0.0);
+    g[1] = FU_NUMBER(0.0);
+    g[2] = FU_NUMBER(0.0);
+    power[0] = -F_x*v[0] - F_y*v[1] - F_z*v[2] + 0.5*c_rate*(P_x*w_x + P_y*w_y + P_z*w_z) + 0.5*wet[0]*(P_rate_x*w_x + P_rate_y*w_y + P_rate_z*w_z + P_x*w_rate_x + P_y*w_rate_y + P_z*w_rate_z);
+}
+
+/* derivatives of the force of the inertia of the fluid on a cable by Morison's equation (derivatives of Morison et al. 1950; Hall & Goupee 2015); 161 add, 292 mul, 1 div, 1 sqrt */
+FU_KERNEL void drag_morison_of_cable_tangent(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_t, fu_real *f_t_rate, fu_real *f_r, fu_real *f_v, fu_real *g_t, fu_real *g_r, fu_real *g_v)
+{
+    (void)t_rate;
+    DRAG_MOTION_PAST_THE_FLUID
+    /* tangent and its rate */
+    const fu_real
+        less = m[0] - m[1],
+        len_t = FU_SQRT(t[0]*t[0] + t[1]*t[1] + t[2]*t[2]),
+        inv_len_t = 1.0/len_t,
+        i_x = inv_len_t*t[0],
+        i_y = inv_len_t*t[1],
+        i_z = inv_len_t*t[2];
+    /* force on the particle */
+    const fu_real
+        past_rate_x = G[0]*w_x + G[1]*w_y + G[2]*w_z + w_rate_x,
+        past_rate_y = G[3]*w_x + G[4]*w_y + G[5]*w_z + w_rate_y,
+        past_rate_z = G[6]*w_x + G[7]*w_y + G[8]*w_z + w_rate_z,
+        less_x_t = less*(i_x*past_rate_x + i_y*past_rate_y + i_z*past_rate_z);
+    /* derivatives */
+    const fu_real
+        d_t0_len_t = inv_len_t*t[0],
+        d_t0_inv_len_t = -(d_t0_len_t*inv_len_t*inv_len_t),
+        d_t0_i_x = d_t0_inv_len_t*t[0] + inv_len_t,
+        d_t0_i_y = d_t0_inv_len_t*t[1],
+        d_t0_i_z = d_t0_inv_len_t*t[2],
+        d_t0_less_x_t = d_t0_i_x*less*past_rate_x + d_t0_i_y*less*past_rate_y + d_t0_i_z*less*past_rate_z,
+        d_t0_F_x = -d_t0_i_x*less_x_t*wet[0] - d_t0_less_x_t*i_x*wet[0],
+        d_t0_F_y = -d_t0_i_y*less_x_t*wet[0] - d_t0_less_x_t*i_y*wet[0],
+        d_t0_F_z = -d_t0_i_z*less_x_t*wet[0] - d_t0_less_x_t*i_z*wet[0],
+        d_t1_len_t = inv_len_t*t[1],
+        d_t1_inv_len_t = -(d_t1_len_t*inv_len_t*inv_len_t),
+        d_t1_i_x = d_t1_inv_len_t*t[0],
+        d_t1_i_y = d_t1_inv_len_t*t[1] + inv_len_t,
+        d_t1_i_z = d_t1_inv_len_t*t[2],
+        d_t1_less_x_t = d_t1_i_x*less*past_rate_x + d_t1_i_y*less*past_rate_y + d_t1_i_z*less*past_rate_z,
+        d_t1_F_x = -d_t1_i_x*less_x_t*wet[0] - d_t1_less_x_t*i_x*wet[0],
+        d_t1_F_y = -d_t1_i_y*less_x_t*wet[0] - d_t1_less_x_t*i_y*wet[0],
+        d_t1_F_z = -d_t1_i_z*less_x_t*wet[0] - d_t1_less_x_t*i_z*wet[0],
+        d_t2_len_t = inv_len_t*t[2],
+        d_t2_inv_len_t = -(d_t2_len_t*inv_len_t*inv_len_t),
+        d_t2_i_x = d_t2_inv_len_t*t[0],
+        d_t2_i_y = d_t2_inv_len_t*t[1],
+        d_t2_i_z = d_t2_inv_len_t*t[2] + inv_len_t,
+        d_t2_less_x_t = d_t2_i_x*less*past_rate_x + d_t2_i_y*less*past_rate_y + d_t2_i_z*less*past_rate_z,
+        d_t2_F_x = -d_t2_i_x*less_x_t*wet[0] - d_t2_less_x_t*i_x*wet[0],
+        d_t2_F_y = -d_t2_i_y*less_x_t*wet[0] - d_t2_less_x_t*i_y*wet[0],
+        d_t2_F_z = -d_t2_i_z*less_x_t*wet[0] - d_t2_less_x_t*i_z*wet[0],
+        d_w_x_less_x_t = G[0]*i_x*less + G[3]*i_y*less + G[6]*i_z*less,
+        d_w_x_F_x = G[0]*m[0]*wet[0] - d_w_x_less_x_t*i_x*wet[0],
+        d_w_x_F_y = G[3]*m[0]*wet[0] - d_w_x_less_x_t*i_y*wet[0],
+        d_w_x_F_z = G[6]*m[0]*wet[0] - d_w_x_less_x_t*i_z*wet[0],
+        d_w_y_less_x_t = G[1]*i_x*less + G[4]*i_y*less + G[7]*i_z*less,
+        d_w_y_F_x = G[1]*m[0]*wet[0] - d_w_y_less_x_t*i_x*wet[0],
+        d_w_y_F_y = G[4]*m[0]*wet[0] - d_w_y_less_x_t*i_y*wet[0],
+        d_w_y_F_z = G[7]*m[0]*wet[0] - d_w_y_less_x_t*i_z*wet[0],
+        d_w_z_less_x_t = G[2]*i_x*less + G[5]*i_y*less + G[8]*i_z*less,
+        d_w_z_F_x = G[2]*m[0]*wet[0] - d_w_z_less_x_t*i_x*wet[0],
+        d_w_z_F_y = G[5]*m[0]*wet[0] - d_w_z_less_x_t*i_y*wet[0],
+        d_w_z_F_z = G[8]*m[0]*wet[0] - d_w_z_less_x_t*i_z*wet[0],
+        d_w_rate_x_less_x_t = i_x*less,
+        d_w_rate_x_F_x = -d_w_rate_x_less_x_t*i_x*wet[0] + m[0]*wet[0],
+        d_w_rate_x_F_y = -(d_w_rate_x_less_x_t*i_y*wet[0]),
+        d_w_rate_x_F_z = -(d_w_rate_x_less_x_t*i_z*wet[0]),
+        d_w_rate_y_less_x_t = i_y*less,
+        d_w_rate_y_F_x = -(d_w_rate_y_less_x_t*i_x*wet[0]),
+        d_w_rate_y_F_y = -d_w_rate_y_less_x_t*i_y*wet[0] + m[0]*wet[0],
+        d_w_rate_y_F_z = -(d_w_rate_y_less_x_t*i_z*wet[0]),
+        d_w_rate_z_less_x_t = i_z*less,
+        d_w_rate_z_F_x = -(d_w_rate_z_less_x_t*i_x*wet[0]),
+        d_w_rate_z_F_y = -(d_w_rate_z_less_x_t*i_y*wet[0]),
+        d_w_rate_z_F_z = -d_w_rate_z_less_x_t*i_z*wet[0] + m[0]*wet[0],
+        d_material_x_F_x = -(displaced*wet[0]),
+        d_material_y_F_y = -(displaced*wet[0]),
+        d_material_z_F_z = -(displaced*wet[0]),
+        d_wet0_F_x = -displaced*material_x - i_x*less_x_t + m[0]*past_rate_x,
+        d_wet0_F_y = -displaced*material_y - i_y*less_x_t + m[0]*past_rate_y,
+        d_wet0_F_z = -displaced*material_z - i_z*less_x_t + m[0]*past_rate_z;
+    /* outputs */
+    f_t[0] = d_t0_F_x;
+    f_t[1] = d_t1_F_x;
+    f_t[2] = d_t2_F_x;
+    f_t[3] = d_t0_F_y;
+    f_t[4] = d_t1_F_y;
+    f_t[5] = d_t2_F_y;
+    f_t[6] = d_t0_F_z;
+    f_t[7] = d_t1_F_z;
+    f_t[8] = d_t2_F_z;
+    FU_EACH(g, 9,
+        f_t_rate[g] = FU_NUMBER(0.0);)
+    f_r[0] = G[0]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[3]*(G[1]*d_material_x_F_x - d_w_y_F_x) + G[6]*(G[2]*d_material_x_F_x - d_w_z_F_x) + c_place_x*d_wet0_F_x;
+    f_r[1] = G[1]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[4]*(G[1]*d_material_x_F_x - d_w_y_F_x) + G[7]*(G[2]*d_material_x_F_x - d_w_z_F_x) + c_place_y*d_wet0_F_x;
+    f_r[2] = G[2]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[5]*(G[1]*d_material_x_F_x - d_w_y_F_x) + G[8]*(G[2]*d_material_x_F_x - d_w_z_F_x) + c_place_z*d_wet0_F_x;
+    f_r[3] = G[0]*(G[3]*d_material_y_F_y - d_w_x_F_y) + G[3]*(G[4]*d_material_y_F_y - d_w_y_F_y) + G[6]*(G[5]*d_material_y_F_y - d_w_z_F_y) + c_place_x*d_wet0_F_y;
+    f_r[4] = G[1]*(G[3]*d_material_y_F_y - d_w_x_F_y) + G[4]*(G[4]*d_material_y_F_y - d_w_y_F_y) + G[7]*(G[5]*d_material_y_F_y - d_w_z_F_y) + c_place_y*d_wet0_F_y;
+    f_r[5] = G[2]*(G[3]*d_material_y_F_y - d_w_x_F_y) + G[5]*(G[4]*d_material_y_F_y - d_w_y_F_y) + G[8]*(G[5]*d_material_y_F_y - d_w_z_F_y) + c_place_z*d_wet0_F_y;
+    f_r[6] = G[0]*(G[6]*d_material_z_F_z - d_w_x_F_z) + G[3]*(G[7]*d_material_z_F_z - d_w_y_F_z) + G[6]*(G[8]*d_material_z_F_z - d_w_z_F_z) + c_place_x*d_wet0_F_z;
+    f_r[7] = G[1]*(G[6]*d_material_z_F_z - d_w_x_F_z) + G[4]*(G[7]*d_material_z_F_z - d_w_y_F_z) + G[7]*(G[8]*d_material_z_F_z - d_w_z_F_z) + c_place_y*d_wet0_F_z;
+    f_r[8] = G[2]*(G[6]*d_material_z_F_z - d_w_x_F_z) + G[5]*(G[7]*d_material_z_F_z - d_w_y_F_z) + G[8]*(G[8]*d_material_z_F_z - d_w_z_F_z) + c_place_z*d_wet0_F_z;
+    f_v[0] = -G[0]*d_w_rate_x_F_x - G[3]*d_w_rate_y_F_x - G[6]*d_w_rate_z_F_x + d_w_x_F_x;
+    f_v[1] = -G[1]*d_w_rate_x_F_x - G[4]*d_w_rate_y_F_x - G[7]*d_w_rate_z_F_x + d_w_y_F_x;
+    f_v[2] = -G[2]*d_w_rate_x_F_x - G[5]*d_w_rate_y_F_x - G[8]*d_w_rate_z_F_x + d_w_z_F_x;
+    f_v[3] = -G[0]*d_w_rate_x_F_y - G[3]*d_w_rate_y_F_y - G[6]*d_w_rate_z_F_y + d_w_x_F_y;
+    f_v[4] = -G[1]*d_w_rate_x_F_y - G[4]*d_w_rate_y_F_y - G[7]*d_w_rate_z_F_y + d_w_y_F_y;
+    f_v[5] = -G[2]*d_w_rate_x_F_y - G[5]*d_w_rate_y_F_y - G[8]*d_w_rate_z_F_y + d_w_z_F_y;
+    f_v[6] = -G[0]*d_w_rate_x_F_z - G[3]*d_w_rate_y_F_z - G[6]*d_w_rate_z_F_z + d_w_x_F_z;
+    f_v[7] = -G[1]*d_w_rate_x_F_z - G[4]*d_w_rate_y_F_z - G[7]*d_w_rate_z_F_z + d_w_y_F_z;
+    f_v[8] = -G[2]*d_w_rate_x_F_z - G[5]*d_w_rate_y_F_z - G[8]*d_w_rate_z_F_z + d_w_z_F_z;
+    FU_EACH(g, 9,
+        g_t[g] = FU_NUMBER(0.0);)
+    FU_EACH(g, 9,
+        g_r[g] = FU_NUMBER(0.0);)
+    FU_EACH(g, 9,
+        g_v[g] = FU_NUMBER(0.0);)
+}
+
+#ifndef FU_BLOCK
+/* force and moment of the inertia of the fluid on a body by Morison's equation; 115 add, 148 mul */
+void drag_morison_of_point(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *moment, fu_real *power)
+{
+    DRAG_ADDED_MASS
+    DRAG_MOTION_PAST_THE_FLUID
+    DRAG_IMPULSE_ITS_RATE_AND_MOMENT
+    /* force on the particle */
+    const fu_real
+        past_rate_x = G[0]*w_x + G[1]*w_y + G[2]*w_z + w_rate_x,
+        past_rate_y = G[3]*w_x + G[4]*w_y + G[5]*w_z + w_rate_y,
+        past_rate_z = G[6]*w_x + G[7]*w_y + G[8]*w_z + w_rate_z,
+        F_x = wet[0]*(M_x[0]*past_rate_x + M_y[0]*past_rate_y + M_z[0]*past_rate_z - displaced*material_x),
+        F_y = wet[0]*(M_x[1]*past_rate_x + M_y[1]*past_rate_y + M_z[1]*past_rate_z - displaced*material_y),
+        F_z = wet[0]*(M_x[2]*past_rate_x + M_y[2]*past_rate_y + M_z[2]*past_rate_z - displaced*material_z),
+        c_rate = c_place_x*v[0] + c_place_y*v[1] + c_place_z*v[2];
+    /* outputs */
+    f[0] = F_x;
+    f[1] = F_y;
+    f[2] = F_z;
+    moment[0] = 0.0;
+    moment[1] = 0.0;
+    moment[2] = 0.0;
+    power[0] = -F_x*v[0] - F_y*v[1] - F_z*v[2] + 0.5*c_rate*(P_x*w_x + P_y*w_y + P_z*w_z) + 0.5*wet[0]*(P_rate_x*w_x + P_rate_y*w_y + P_rate_z*w_z + P_x*w_rate_x + P_y*w_rate_y + P_z*w_rate_z);
+}
+#endif
+
+#ifndef FU_BLOCK
+/* derivatives of force and moment of the inertia of the fluid by Morison's equation (derivatives of Morison et al. 1950; Hall & Goupee 2015); 312 add, 462 mul */
+void drag_morison_of_point_tangent(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_by, fu_real *moment_by)
+{
+    (void)omega;
+    DRAG_ADDED_MASS
+    /* motion past the fluid */
+    fu_real w[3], c_place[3];
+    FU_EACH(i, 3, w[i] = -U[i] + v[i];)
+    const fu_real
+        w_rate_x = -G[0]*v[0] - G[1]*v[1] - G[2]*v[2] - U_rate[0] + a[0],
+        w_rate_y = -G[3]*v[0] - G[4]*v[1] - G[5]*v[2] - U_rate[1] + a[1],
+        w_rate_z = -G[6]*v[0] - G[7]*v[1] - G[8]*v[2] - U_rate[2] + a[2],
+        material_x = G[0]*U[0] + G[1]*U[1] + G[2]*U[2] + U_rate[0],
+        material_y = G[3]*U[0] + G[4]*U[1] + G[5]*U[2] + U_rate[1],
+        material_z = G[6]*U[0] + G[7]*U[1] + G[8]*U[2] + U_rate[2];
+    FU_EACH(i, 3, c_place[i] = up[i]*wet[1];)
+    /* force on the particle */
+    const fu_real
+        past_rate_x = G[0]*w[0] + G[1]*w[1] + G[2]*w[2] + w_rate_x,
+        past_rate_y = G[3]*w[0] + G[4]*w[1] + G[5]*w[2] + w_rate_y,
+        past_rate_z = G[6]*w[0] + G[7]*w[1] + G[8]*w[2] + w_rate_z;
+    /* derivatives */
+    fu_real d_th3_CM1[2], d_th3_CM2[2], d_th3_CM3[2], d_th3_M3[2];
+    DRAG_PART_OF_DERIVATIVES_10
+    const fu_real d_th1_F_x = d_th1_M1_y*past_rate_y*wet[0] + d_th1_M1_z*past_rate_z*wet[0];
+    DRAG_PART_OF_DERIVATIVES_11
+    const fu_real d_th1_F_y = d_th1_M2_x*past_rate_x*wet[0] + d_th1_M2_y*past_rate_y*wet[0] + d_th1_M2_z*past_rate_z*wet[0];
+    DRAG_PART_OF_DERIVATIVES_12
+    const fu_real d_th1_F_z = d_th1_M3_x*past_rate_x*wet[0] + d_th1_M3_y*past_rate_y*wet[0] + d_th1_M3_z*past_rate_z*wet[0];
+    DRAG_PART_OF_DERIVATIVES_13
+    const fu_real
+        d_th2_F_x = d_th2_M1_x*past_rate_x*wet[0] + d_th2_M1_y*past_rate_y*wet[0] + d_th2_M1_z*past_rate_z*wet[0],
+        d_th2_M2_x = A[3]*d_th2_CM1_x + A[4]*d_th2_CM2_x + A[5]*d_th2_CM3_x,
+        d_th2_M2_z = A[3]*d_th2_CM1_z + A[4]*d_th2_CM2_z + A[5]*d_th2_CM3_z,
+        d_th2_F_y = d_th2_M2_x*past_rate_x*wet[0] + d_th2_M2_z*past_rate_z*wet[0];
+    DRAG_PART_OF_DERIVATIVES_14
+    const fu_real d_th2_F_z = d_th2_M3_x*past_rate_x*wet[0] + d_th2_M3_y*past_rate_y*wet[0] + d_th2_M3_z*past_rate_z*wet[0];
+    d_th3_CM1[0] = -A[3]*C[0] - A[4]*C[1] - A[5]*C[2];
+    d_th3_CM2[0] = -A[3]*C[3] - A[4]*C[4] - A[5]*C[5];
+    d_th3_CM3[0] = -A[3]*C[6] - A[4]*C[7] - A[5]*C[8];
+    const fu_real d_th3_M1_x = A[0]*d_th3_CM1[0] + A[1]*d_th3_CM2[0] + A[2]*d_th3_CM3[0] - A[3]*CM_x[0] - A[4]*CM_x[1] - A[5]*CM_x[2];
+    d_th3_CM1[1] = A[0]*C[0] + A[1]*C[1] + A[2]*C[2];
+    d_th3_CM2[1] = A[0]*C[3] + A[1]*C[4] + A[2]*C[5];
+    d_th3_CM3[1] = A[0]*C[6] + A[1]*C[7] + A[2]*C[8];
+    const fu_real
+        d_th3_M1_y = A[0]*d_th3_CM1[1] + A[1]*d_th3_CM2[1] + A[2]*d_th3_CM3[1] - A[3]*CM_y[0] - A[4]*CM_y[1] - A[5]*CM_y[2],
+        d_th3_M1_z = -A[3]*CM_z[0] - A[4]*CM_z[1] - A[5]*CM_z[2],
+        d_th3_F_x = d_th3_M1_x*past_rate_x*wet[0] + d_th3_M1_y*past_rate_y*wet[0] + d_th3_M1_z*past_rate_z*wet[0],
+        d_th3_M2_x = A[0]*CM_x[0] + A[1]*CM_x[1] + A[2]*CM_x[2] + A[3]*d_th3_CM1[0] + A[4]*d_th3_CM2[0] + A[5]*d_th3_CM3[0],
+        d_th3_M2_y = A[0]*CM_y[0] + A[1]*CM_y[1] + A[2]*CM_y[2] + A[3]*d_th3_CM1[1] + A[4]*d_th3_CM2[1] + A[5]*d_th3_CM3[1],
+        d_th3_M2_z = A[0]*CM_z[0] + A[1]*CM_z[1] + A[2]*CM_z[2],
+        d_th3_F_y = d_th3_M2_x*past_rate_x*wet[0] + d_th3_M2_y*past_rate_y*wet[0] + d_th3_M2_z*past_rate_z*wet[0];
+    FU_EACH(i, 2, d_th3_M3[i] = A[6]*d_th3_CM1[i] + A[7]*d_th3_CM2[i] + A[8]*d_th3_CM3[i];)
+    const fu_real
+        d_th3_F_z = d_th3_M3[0]*past_rate_x*wet[0] + d_th3_M3[1]*past_rate_y*wet[0],
+        d_w_x_F_x = G[0]*M_x[0]*wet[0] + G[3]*M_y[0]*wet[0] + G[6]*M_z[0]*wet[0],
+        d_w_x_F_y = G[0]*M_x[1]*wet[0] + G[3]*M_y[1]*wet[0] + G[6]*M_z[1]*wet[0],
+        d_w_x_F_z = G[0]*M_x[2]*wet[0] + G[3]*M_y[2]*wet[0] + G[6]*M_z[2]*wet[0],
+        d_w_y_F_x = G[1]*M_x[0]*wet[0] + G[4]*M_y[0]*wet[0] + G[7]*M_z[0]*wet[0],
+        d_w_y_F_y = G[1]*M_x[1]*wet[0] + G[4]*M_y[1]*wet[0] + G[7]*M_z[1]*wet[0],
+        d_w_y_F_z = G[1]*M_x[2]*wet[0] + G[4]*M_y[2]*wet[0] + G[7]*M_z[2]*wet[0],
+        d_w_z_F_x = G[2]*M_x[0]*wet[0] + G[5]*M_y[0]*wet[0] + G[8]*M_z[0]*wet[0],
+        d_w_z_F_y = G[2]*M_x[1]*wet[0] + G[5]*M_y[1]*wet[0] + G[8]*M_z[1]*wet[0],
+        d_w_z_F_z = G[2]*M_x[2]*wet[0] + G[5]*M_y[2]*wet[0] + G[8]*M_z[2]*wet[0],
+        d_w_rate_x_F_x = M_x[0]*wet[0],
+        d_w_rate_x_F_y = M_x[1]*wet[0],
+        d_w_rate_x_F_z = M_x[2]*wet[0],
+        d_w_rate_y_F_x = M_y[0]*wet[0],
+        d_w_rate_y_F_y = M_y[1]*wet[0],
+        d_w_rate_y_F_z = M_y[2]*wet[0],
+        d_w_rate_z_F_x = M_z[0]*wet[0],
+        d_w_rate_z_F_y = M_z[1]*wet[0],
+        d_w_rate_z_F_z = M_z[2]*wet[0],
+        d_material_x_F_x = -(displaced*wet[0]),
+        d_material_y_F_y = -(displaced*wet[0]),
+        d_material_z_F_z = -(displaced*wet[0]),
+        d_wet0_F_x = M_x[0]*past_rate_x + M_y[0]*past_rate_y + M_z[0]*past_rate_z - displaced*material_x,
+        d_wet0_F_y = M_x[1]*past_rate_x + M_y[1]*past_rate_y + M_z[1]*past_rate_z - displaced*material_y,
+        d_wet0_F_z = M_x[2]*past_rate_x + M_y[2]*past_rate_y + M_z[2]*past_rate_z - displaced*material_z;
+    /* outputs */
+    f_by[0] = G[0]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[3]*(G[1]*d_material_x_F_x - d_w_y_F_x) + G[6]*(G[2]*d_material_x_F_x - d_w_z_F_x) + c_place[0]*d_wet0_F_x;
+    f_by[1] = G[1]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[4]*(G[1]*d_material_x_F_x - d_w_y_F_x) + G[7]*(G[2]*d_material_x_F_x - d_w_z_F_x) + c_place[1]*d_wet0_F_x;
+    f_by[2] = G[2]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[5]*(G[1]*d_material_x_F_x - d_w_y_F_x) + G[8]*(G[2]*d_material_x_F_x - d_w_z_F_x) + c_place[2]*d_wet0_F_x;
+    f_by[3] = -G[0]*d_w_rate_x_F_x - G[3]*d_w_rate_y_F_x - G[6]*d_w_rate_z_F_x + d_w_x_F_x;
+    f_by[4] = -G[1]*d_w_rate_x_F_x - G[4]*d_w_rate_y_F_x - G[7]*d_w_rate_z_F_x + d_w_y_F_x;
+    f_by[5] = -G[2]*d_w_rate_x_F_x - G[5]*d_w_rate_y_F_x - G[8]*d_w_rate_z_F_x + d_w_z_F_x;
+    f_by[6] = d_th1_F_x;
+    f_by[7] = d_th2_F_x;
+    f_by[8] = d_th3_F_x;
+    FU_PAIRS(i, j, 3, f_by[12*i + j + 9] = 0.0;)
+    f_by[12] = G[0]*(G[3]*d_material_y_F_y - d_w_x_F_y) + G[3]*(G[4]*d_material_y_F_y - d_w_y_F_y) + G[6]*(G[5]*d_material_y_F_y - d_w_z_F_y) + c_place[0]*d_wet0_F_y;
+    f_by[13] = G[1]*(G[3]*d_material_y_F_y - d_w_x_F_y) + G[4]*(G[4]*d_material_y_F_y - d_w_y_F_y) + G[7]*(G[5]*d_material_y_F_y - d_w_z_F_y) + c_place[1]*d_wet0_F_y;
+    f_by[14] = G[2]*(G[3]*d_material_y_F_y - d_w_x_F_y) + G[5]*(G[4]*d_material_y_F_y - d_w_y_F_y) + G[8]*(G[5]*d_material_y_F_y - d_w_z_F_y) + c_place[2]*d_wet0_F_y;
+    f_by[15] = -G[0]*d_w_rate_x_F_y - G[3]*d_w_rate_y_F_y - G[6]*d_w_rate_z_F_y + d_w_x_F_y;
+    f_by[16] = -G[1]*d_w_rate_x_F_y - G[4]*d_w_rate_y_F_y - G[7]*d_w_rate_z_F_y + d_w_y_F_y;
+    f_by[17] = -G[2]*d_w_rate_x_F_y - G[5]*d_w_rate_y_F_y - G[8]*d_w_rate_z_F_y + d_w_z_F_y;
+    f_by[18] = d_th1_F_y;
+    f_by[19] = d_th2_F_y;
+    f_by[20] = d_th3_F_y;
+    f_by[24] = G[0]*(G[6]*d_material_z_F_z - d_w_x_F_z) + G[3]*(G[7]*d_material_z_F_z - d_w_y_F_z) + G[6]*(G[8]*d_material_z_F_z - d_w_z_F_z) + c_place[0]*d_wet0_F_z;
+    f_by[25] = G[1]*(G[6]*d_material_z_F_z - d_w_x_F_z) + G[4]*(G[7]*d_material_z_F_z - d_w_y_F_z) + G[7]*(G[8]*d_material_z_F_z - d_w_z_F_z) + c_place[1]*d_wet0_F_z;
+    f_by[26] = G[2]*(G[6]*d_material_z_F_z - d_w_x_F_z) + G[5]*(G[7]*d_material_z_F_z - d_w_y_F_z) + G[8]*(G[8]*d_material_z_F_z - d_w_z_F_z) + c_place[2]*d_wet0_F_z;
+    f_by[27] = -G[0]*d_w_rate_x_F_z - G[3]*d_w_rate_y_F_z - G[6]*d_w_rate_z_F_z + d_w_x_F_z;
+    f_by[28] = -G[1]*d_w_rate_x_F_z - G[4]*d_w_rate_y_F_z - G[7]*d_w_rate_z_F_z + d_w_y_F_z;
+    f_by[29] = -G[2]*d_w_rate_x_F_z - G[5]*d_w_rate_y_F_z - G[8]*d_w_rate_z_F_z + d_w_z_F_z;
+    f_by[30] = d_th1_F_z;
+    f_by[31] = d_th2_F_z;
+    f_by[32] = d_th3_F_z;
+    FU_PAIRS(i, j, 3, moment_by[12*i + j] = 0.0;)
+    FU_PAIRS(i, j, 3, moment_by[12*i + j + 3] = 0.0;)
+    FU_PAIRS(i, j, 3, moment_by[12*i + j + 6] = 0.0;)
+    FU_PAIRS(i, j, 3, moment_by[12*i + j + 9] = 0.0;)
 }
 #endif
 

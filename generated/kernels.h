@@ -1081,6 +1081,44 @@ fu_drag_inertia_of_point_step_kernel drag_inertia_of_point_step;
 /* A 2x2, A_next 2x2, C 2x2, w 2, w_next 2, theta 1, turning 2, dp 2, p 2, moment 1, more 2 */
 fu_drag_inertia_of_point_step_kernel planar_drag_inertia_of_point_step;
 
+typedef void fu_drag_morison_of_cable_kernel(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *g, fu_real *power);
+/* force of the inertia of the fluid on a length of cable by Morison's equation: t [1]; t_rate [1/s]; m [kg/m];
+ * displaced [kg/m]; v [m/s]; a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2]; up [1] -> f [N/m]; g
+ * [N]; power [W/m] */
+/* t 3, t_rate 3, m 2, v 3, a 3, U 3, U_rate 3, G 3x3, wet 3, up 3, f 3, g 3, power 1 */
+fu_drag_morison_of_cable_kernel drag_morison_of_cable;
+/* t 2, t_rate 2, m 2, v 2, a 2, U 2, U_rate 2, G 2x2, wet 3, up 2, f 2, g 2, power 1 */
+fu_drag_morison_of_cable_kernel planar_drag_morison_of_cable;
+
+typedef void fu_drag_morison_of_cable_tangent_kernel(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_t, fu_real *f_t_rate, fu_real *f_r, fu_real *f_v, fu_real *g_t, fu_real *g_r, fu_real *g_v);
+/* derivatives of the force of the inertia of the fluid on a cable by Morison's equation: t [1]; t_rate [1/s]; m
+ * [kg/m]; displaced [kg/m]; v [m/s]; a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2]; up [1] -> f_t
+ * [SI]; f_t_rate [SI]; f_r [SI]; f_v [SI]; g_t [SI]; g_r [SI]; g_v [SI] */
+/* t 3, t_rate 3, m 2, v 3, a 3, U 3, U_rate 3, G 3x3, wet 3, up 3, f_t 3x3, f_t_rate 3x3, f_r 3x3, f_v 3x3, g_t 3x3,
+ * g_r 3x3, g_v 3x3 */
+fu_drag_morison_of_cable_tangent_kernel drag_morison_of_cable_tangent;
+/* t 2, t_rate 2, m 2, v 2, a 2, U 2, U_rate 2, G 2x2, wet 3, up 2, f_t 2x2, f_t_rate 2x2, f_r 2x2, f_v 2x2, g_t 2x2,
+ * g_r 2x2, g_v 2x2 */
+fu_drag_morison_of_cable_tangent_kernel planar_drag_morison_of_cable_tangent;
+
+typedef void fu_drag_morison_of_point_kernel(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *moment, fu_real *power);
+/* force and moment of the inertia of the fluid on a body by Morison's equation: A [1]; C [kg]; omega [rad/s];
+ * displaced [kg]; v [m/s]; a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2]; up [1] -> f [N]; moment
+ * [N m]; power [W] */
+/* A 3x3, C 3x3, omega 3, v 3, a 3, U 3, U_rate 3, G 3x3, wet 3, up 3, f 3, moment 3, power 1 */
+fu_drag_morison_of_point_kernel drag_morison_of_point;
+/* A 2x2, C 2x2, omega 1, v 2, a 2, U 2, U_rate 2, G 2x2, wet 3, up 2, f 2, moment 1, power 1 */
+fu_drag_morison_of_point_kernel planar_drag_morison_of_point;
+
+typedef void fu_drag_morison_of_point_tangent_kernel(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_by, fu_real *moment_by);
+/* derivatives of force and moment of the inertia of the fluid by Morison's equation: A [1]; C [kg]; omega [rad/s];
+ * displaced [kg]; v [m/s]; a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2]; up [1] -> f_by [SI];
+ * moment_by [SI] */
+/* A 3x3, C 3x3, omega 3, v 3, a 3, U 3, U_rate 3, G 3x3, wet 3, up 3, f_by 3x12, moment_by 3x12 */
+fu_drag_morison_of_point_tangent_kernel drag_morison_of_point_tangent;
+/* A 2x2, C 2x2, omega 1, v 2, a 2, U 2, U_rate 2, G 2x2, wet 3, up 2, f_by 2x6, moment_by 1x6 */
+fu_drag_morison_of_point_tangent_kernel planar_drag_morison_of_point_tangent;
+
 typedef void fu_drag_wet_sphere_kernel(const fu_real *u, fu_real *e, fu_real *c, fu_real *c_u, fu_real *c_uu);
 /* wet part of a sphere: u [1] -> e [1]; c [1]; c_u [1]; c_uu [1] */
 /* u 1, e 1, c 1, c_u 1, c_uu 1 */
@@ -2361,6 +2399,10 @@ typedef struct {
     fu_drag_inertia_of_point_kernel *inertia_of_point;
     fu_drag_inertia_of_point_tangent_kernel *inertia_of_point_tangent;
     fu_drag_inertia_of_point_step_kernel *inertia_of_point_step;
+    fu_drag_morison_of_cable_kernel *morison_of_cable;
+    fu_drag_morison_of_cable_tangent_kernel *morison_of_cable_tangent;
+    fu_drag_morison_of_point_kernel *morison_of_point;
+    fu_drag_morison_of_point_tangent_kernel *morison_of_point_tangent;
     fu_drag_wet_sphere_kernel *wet_sphere;
     fu_drag_wet_section_kernel *wet_section;
     fu_drag_wet_column_kernel *wet_column;

@@ -78,7 +78,17 @@
         d_wet0_G_t_x = d_wet0_pull*(i_x*w_t - w_x), \
         d_wet0_G_t_y = d_wet0_pull*(i_y*w_t - w_y);
 
-/* motion past the fluid: of planar_drag_inertia_of_cable and 3 more */
+/* part of derivatives: of planar_drag_inertia_of_point_tangent and 1 more */
+#define PLANAR_DRAG_PART_OF_DERIVATIVES_6 \
+    const fu_real \
+        d_th1_CM1_x = -A[2]*C[0] - A[3]*C[1], \
+        d_th1_CM2_x = -A[2]*C[2] - A[3]*C[3], \
+        d_th1_M1_x = A[0]*d_th1_CM1_x + A[1]*d_th1_CM2_x - A[2]*CM1_x - A[3]*CM2_x, \
+        d_th1_CM1_y = A[0]*C[0] + A[1]*C[1], \
+        d_th1_CM2_y = A[0]*C[2] + A[1]*C[3], \
+        d_th1_M1_y = A[0]*d_th1_CM1_y + A[1]*d_th1_CM2_y - A[2]*CM1_y - A[3]*CM2_y;
+
+/* motion past the fluid: of planar_drag_inertia_of_cable and 7 more */
 #define PLANAR_DRAG_MOTION_PAST_THE_FLUID \
     const fu_real \
         w_x = -U[0] + v[0], \
@@ -90,7 +100,7 @@
         c_place_x = up[0]*wet[1], \
         c_place_y = up[1]*wet[1];
 
-/* tangent and its rate: of planar_drag_inertia_of_cable and 3 more */
+/* tangent and its rate: of planar_drag_inertia_of_cable and 4 more */
 #define PLANAR_DRAG_TANGENT_AND_ITS_RATE \
     const fu_real \
         less = m[0] - m[1], \
@@ -101,7 +111,7 @@
         i_rate_x = inv_len_t*(-i_x*(i_x*t_rate[0] + i_y*t_rate[1]) + t_rate[0]), \
         i_rate_y = inv_len_t*(-i_y*(i_x*t_rate[0] + i_y*t_rate[1]) + t_rate[1]);
 
-/* impulse and its rate: of planar_drag_inertia_of_cable and 3 more */
+/* impulse and its rate: of planar_drag_inertia_of_cable and 4 more */
 #define PLANAR_DRAG_IMPULSE_AND_ITS_RATE \
     const fu_real \
         w_t = i_x*w_x + i_y*w_y, \
@@ -878,13 +888,8 @@ void planar_drag_inertia_of_point_tangent(const fu_real *A, const fu_real *C, co
         displaced_wet = displaced*wet[0],
         T = 0.5*P_x*w_x + 0.5*P_y*w_y;
     /* derivatives */
+    PLANAR_DRAG_PART_OF_DERIVATIVES_6
     const fu_real
-        d_th1_CM1_x = -A[2]*C[0] - A[3]*C[1],
-        d_th1_CM2_x = -A[2]*C[2] - A[3]*C[3],
-        d_th1_M1_x = A[0]*d_th1_CM1_x + A[1]*d_th1_CM2_x - A[2]*CM1_x - A[3]*CM2_x,
-        d_th1_CM1_y = A[0]*C[0] + A[1]*C[1],
-        d_th1_CM2_y = A[0]*C[2] + A[1]*C[3],
-        d_th1_M1_y = A[0]*d_th1_CM1_y + A[1]*d_th1_CM2_y - A[2]*CM1_y - A[3]*CM2_y,
         d_th1_M2_x = A[0]*CM1_x + A[1]*CM2_x + A[2]*d_th1_CM1_x + A[3]*d_th1_CM2_x,
         d_th1_M2_y = A[0]*CM1_y + A[1]*CM2_y + A[2]*d_th1_CM1_y + A[3]*d_th1_CM2_y,
         d_th1_P_y = d_th1_M2_x*w_x + d_th1_M2_y*w_y,
@@ -1027,6 +1032,195 @@ void planar_drag_inertia_of_point_step(const fu_real *A, const fu_real *A_next, 
     moment[0] = 0.5*a_x*(a_x*(L2_x + M2_x) + a_y*(L2_y + M2_y)) - 0.5*a_y*(a_x*(L1_x + M1_x) + a_y*(L1_y + M1_y)) - 0.5*b_x*(b_x*(L2_x + M2_x) + b_y*(L2_y + M2_y)) + 0.5*b_y*(b_x*(L1_x + M1_x) + b_y*(L1_y + M1_y)) - 0.25*dp_x*turning[1] + 0.25*dp_y*turning[0] - 0.25*y_a_x*(N2_x*y_a_x + N2_y*y_a_y) + 0.25*y_a_y*(N1_x*y_a_x + N1_y*y_a_y) + 0.25*y_b_x*(N2_x*y_b_x + N2_y*y_b_y) - 0.25*y_b_y*(N1_x*y_b_x + N1_y*y_b_y);
     more[0] = -(0.25*theta[0]*turning[1]);
     more[1] = 0.25*theta[0]*turning[0];
+}
+#endif
+
+/* force of the inertia of the fluid on a length of cable by Morison's equation; 45 add, 71 mul, 1 div, 1 sqrt */
+FU_KERNEL void planar_drag_morison_of_cable(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *g, fu_real *power)
+{
+    PLANAR_DRAG_MOTION_PAST_THE_FLUID
+    PLANAR_DRAG_TANGENT_AND_ITS_RATE
+    PLANAR_DRAG_IMPULSE_AND_ITS_RATE
+    /* force on the particle */
+    const fu_real
+        past_rate_x = G[0]*w_x + G[1]*w_y + w_rate_x,
+        past_rate_y = G[2]*w_x + G[3]*w_y + w_rate_y,
+        less_x_t = less*(i_x*past_rate_x + i_y*past_rate_y),
+        F_x = wet[0]*(-displaced*material_x - i_x*less_x_t + m[0]*past_rate_x),
+        F_y = wet[0]*(-displaced*material_y - i_y*less_x_t + m[0]*past_rate_y),
+        c_rate = c_place_x*v[0] + c_place_y*v[1];
+    /* outputs */
+    f[0] = F_x;
+    f[1] = F_y;
+    g[0] = FU_NUMBER(0.0);
+    g[1] = FU_NUMBER(0.0);
+    power[0] = -F_x*v[0] - F_y*v[1] + 0.5*c_rate*(P_x*w_x + P_y*w_y) + 0.5*wet[0]*(P_rate_x*w_x + P_rate_y*w_y + P_x*w_rate_x + P_y*w_rate_y);
+}
+
+/* derivatives of the force of the inertia of the fluid on a cable by Morison's equation (derivatives of Morison et al. 1950; Hall & Goupee 2015); 63 add, 127 mul, 1 div, 1 sqrt */
+FU_KERNEL void planar_drag_morison_of_cable_tangent(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_t, fu_real *f_t_rate, fu_real *f_r, fu_real *f_v, fu_real *g_t, fu_real *g_r, fu_real *g_v)
+{
+    (void)t_rate;
+    PLANAR_DRAG_MOTION_PAST_THE_FLUID
+    /* tangent and its rate */
+    const fu_real
+        less = m[0] - m[1],
+        len_t = FU_SQRT(t[0]*t[0] + t[1]*t[1]),
+        inv_len_t = 1.0/len_t,
+        i_x = inv_len_t*t[0],
+        i_y = inv_len_t*t[1];
+    /* force on the particle */
+    const fu_real
+        past_rate_x = G[0]*w_x + G[1]*w_y + w_rate_x,
+        past_rate_y = G[2]*w_x + G[3]*w_y + w_rate_y,
+        less_x_t = less*(i_x*past_rate_x + i_y*past_rate_y);
+    /* derivatives */
+    const fu_real
+        d_t0_len_t = inv_len_t*t[0],
+        d_t0_inv_len_t = -(d_t0_len_t*inv_len_t*inv_len_t),
+        d_t0_i_x = d_t0_inv_len_t*t[0] + inv_len_t,
+        d_t0_i_y = d_t0_inv_len_t*t[1],
+        d_t0_less_x_t = d_t0_i_x*less*past_rate_x + d_t0_i_y*less*past_rate_y,
+        d_t0_F_x = -d_t0_i_x*less_x_t*wet[0] - d_t0_less_x_t*i_x*wet[0],
+        d_t0_F_y = -d_t0_i_y*less_x_t*wet[0] - d_t0_less_x_t*i_y*wet[0],
+        d_t1_len_t = inv_len_t*t[1],
+        d_t1_inv_len_t = -(d_t1_len_t*inv_len_t*inv_len_t),
+        d_t1_i_x = d_t1_inv_len_t*t[0],
+        d_t1_i_y = d_t1_inv_len_t*t[1] + inv_len_t,
+        d_t1_less_x_t = d_t1_i_x*less*past_rate_x + d_t1_i_y*less*past_rate_y,
+        d_t1_F_x = -d_t1_i_x*less_x_t*wet[0] - d_t1_less_x_t*i_x*wet[0],
+        d_t1_F_y = -d_t1_i_y*less_x_t*wet[0] - d_t1_less_x_t*i_y*wet[0],
+        d_w_x_less_x_t = G[0]*i_x*less + G[2]*i_y*less,
+        d_w_x_F_x = G[0]*m[0]*wet[0] - d_w_x_less_x_t*i_x*wet[0],
+        d_w_x_F_y = G[2]*m[0]*wet[0] - d_w_x_less_x_t*i_y*wet[0],
+        d_w_y_less_x_t = G[1]*i_x*less + G[3]*i_y*less,
+        d_w_y_F_x = G[1]*m[0]*wet[0] - d_w_y_less_x_t*i_x*wet[0],
+        d_w_y_F_y = G[3]*m[0]*wet[0] - d_w_y_less_x_t*i_y*wet[0],
+        d_w_rate_x_less_x_t = i_x*less,
+        d_w_rate_x_F_x = -d_w_rate_x_less_x_t*i_x*wet[0] + m[0]*wet[0],
+        d_w_rate_x_F_y = -(d_w_rate_x_less_x_t*i_y*wet[0]),
+        d_w_rate_y_less_x_t = i_y*less,
+        d_w_rate_y_F_x = -(d_w_rate_y_less_x_t*i_x*wet[0]),
+        d_w_rate_y_F_y = -d_w_rate_y_less_x_t*i_y*wet[0] + m[0]*wet[0],
+        d_material_x_F_x = -(displaced*wet[0]),
+        d_material_y_F_y = -(displaced*wet[0]),
+        d_wet0_F_x = -displaced*material_x - i_x*less_x_t + m[0]*past_rate_x,
+        d_wet0_F_y = -displaced*material_y - i_y*less_x_t + m[0]*past_rate_y;
+    /* outputs */
+    f_t[0] = d_t0_F_x;
+    f_t[1] = d_t1_F_x;
+    f_t[2] = d_t0_F_y;
+    f_t[3] = d_t1_F_y;
+    FU_EACH(g, 4,
+        f_t_rate[g] = FU_NUMBER(0.0);)
+    f_r[0] = G[0]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[2]*(G[1]*d_material_x_F_x - d_w_y_F_x) + c_place_x*d_wet0_F_x;
+    f_r[1] = G[1]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[3]*(G[1]*d_material_x_F_x - d_w_y_F_x) + c_place_y*d_wet0_F_x;
+    f_r[2] = G[0]*(G[2]*d_material_y_F_y - d_w_x_F_y) + G[2]*(G[3]*d_material_y_F_y - d_w_y_F_y) + c_place_x*d_wet0_F_y;
+    f_r[3] = G[1]*(G[2]*d_material_y_F_y - d_w_x_F_y) + G[3]*(G[3]*d_material_y_F_y - d_w_y_F_y) + c_place_y*d_wet0_F_y;
+    f_v[0] = -G[0]*d_w_rate_x_F_x - G[2]*d_w_rate_y_F_x + d_w_x_F_x;
+    f_v[1] = -G[1]*d_w_rate_x_F_x - G[3]*d_w_rate_y_F_x + d_w_y_F_x;
+    f_v[2] = -G[0]*d_w_rate_x_F_y - G[2]*d_w_rate_y_F_y + d_w_x_F_y;
+    f_v[3] = -G[1]*d_w_rate_x_F_y - G[3]*d_w_rate_y_F_y + d_w_y_F_y;
+    FU_EACH(g, 4,
+        g_t[g] = FU_NUMBER(0.0);)
+    FU_EACH(g, 4,
+        g_r[g] = FU_NUMBER(0.0);)
+    FU_EACH(g, 4,
+        g_v[g] = FU_NUMBER(0.0);)
+}
+
+#ifndef FU_BLOCK
+/* force and moment of the inertia of the fluid on a body by Morison's equation; 44 add, 64 mul */
+void planar_drag_morison_of_point(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *moment, fu_real *power)
+{
+    /* added mass */
+    const fu_real
+        CM1_x = A[0]*C[0] + A[1]*C[1],
+        CM1_y = A[2]*C[0] + A[3]*C[1],
+        CM2_x = A[0]*C[2] + A[1]*C[3],
+        CM2_y = A[2]*C[2] + A[3]*C[3],
+        M1_x = A[0]*CM1_x + A[1]*CM2_x,
+        M1_y = A[0]*CM1_y + A[1]*CM2_y,
+        M2_x = A[2]*CM1_x + A[3]*CM2_x,
+        M2_y = A[2]*CM1_y + A[3]*CM2_y;
+    PLANAR_DRAG_MOTION_PAST_THE_FLUID
+    /* impulse, its rate and moment */
+    const fu_real
+        P_x = M1_x*w_x + M1_y*w_y,
+        P_y = M2_x*w_x + M2_y*w_y,
+        rest_x = omega[0]*w_y + w_rate_x,
+        rest_y = -omega[0]*w_x + w_rate_y,
+        P_rate_x = M1_x*rest_x + M1_y*rest_y - P_y*omega[0],
+        P_rate_y = M2_x*rest_x + M2_y*rest_y + P_x*omega[0];
+    /* force on the particle */
+    const fu_real
+        past_rate_x = G[0]*w_x + G[1]*w_y + w_rate_x,
+        past_rate_y = G[2]*w_x + G[3]*w_y + w_rate_y,
+        F_x = wet[0]*(M1_x*past_rate_x + M1_y*past_rate_y - displaced*material_x),
+        F_y = wet[0]*(M2_x*past_rate_x + M2_y*past_rate_y - displaced*material_y),
+        c_rate = c_place_x*v[0] + c_place_y*v[1];
+    /* outputs */
+    f[0] = F_x;
+    f[1] = F_y;
+    moment[0] = 0.0;
+    power[0] = -F_x*v[0] - F_y*v[1] + 0.5*c_rate*(P_x*w_x + P_y*w_y) + 0.5*wet[0]*(P_rate_x*w_x + P_rate_y*w_y + P_x*w_rate_x + P_y*w_rate_y);
+}
+#endif
+
+#ifndef FU_BLOCK
+/* derivatives of force and moment of the inertia of the fluid by Morison's equation (derivatives of Morison et al. 1950; Hall & Goupee 2015); 74 add, 118 mul */
+void planar_drag_morison_of_point_tangent(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_by, fu_real *moment_by)
+{
+    (void)omega;
+    /* added mass */
+    const fu_real
+        CM1_x = A[0]*C[0] + A[1]*C[1],
+        CM1_y = A[2]*C[0] + A[3]*C[1],
+        CM2_x = A[0]*C[2] + A[1]*C[3],
+        CM2_y = A[2]*C[2] + A[3]*C[3],
+        M1_x = A[0]*CM1_x + A[1]*CM2_x,
+        M1_y = A[0]*CM1_y + A[1]*CM2_y,
+        M2_x = A[2]*CM1_x + A[3]*CM2_x,
+        M2_y = A[2]*CM1_y + A[3]*CM2_y;
+    PLANAR_DRAG_MOTION_PAST_THE_FLUID
+    /* force on the particle */
+    const fu_real
+        past_rate_x = G[0]*w_x + G[1]*w_y + w_rate_x,
+        past_rate_y = G[2]*w_x + G[3]*w_y + w_rate_y;
+    /* derivatives */
+    PLANAR_DRAG_PART_OF_DERIVATIVES_6
+    const fu_real
+        d_th1_F_x = d_th1_M1_x*past_rate_x*wet[0] + d_th1_M1_y*past_rate_y*wet[0],
+        d_th1_M2_x = A[0]*CM1_x + A[1]*CM2_x + A[2]*d_th1_CM1_x + A[3]*d_th1_CM2_x,
+        d_th1_M2_y = A[0]*CM1_y + A[1]*CM2_y + A[2]*d_th1_CM1_y + A[3]*d_th1_CM2_y,
+        d_th1_F_y = d_th1_M2_x*past_rate_x*wet[0] + d_th1_M2_y*past_rate_y*wet[0],
+        d_w_x_F_x = G[0]*M1_x*wet[0] + G[2]*M1_y*wet[0],
+        d_w_x_F_y = G[0]*M2_x*wet[0] + G[2]*M2_y*wet[0],
+        d_w_y_F_x = G[1]*M1_x*wet[0] + G[3]*M1_y*wet[0],
+        d_w_y_F_y = G[1]*M2_x*wet[0] + G[3]*M2_y*wet[0],
+        d_w_rate_x_F_x = M1_x*wet[0],
+        d_w_rate_x_F_y = M2_x*wet[0],
+        d_w_rate_y_F_x = M1_y*wet[0],
+        d_w_rate_y_F_y = M2_y*wet[0],
+        d_material_x_F_x = -(displaced*wet[0]),
+        d_material_y_F_y = -(displaced*wet[0]),
+        d_wet0_F_x = M1_x*past_rate_x + M1_y*past_rate_y - displaced*material_x,
+        d_wet0_F_y = M2_x*past_rate_x + M2_y*past_rate_y - displaced*material_y;
+    /* outputs */
+    f_by[0] = G[0]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[2]*(G[1]*d_material_x_F_x - d_w_y_F_x) + c_place_x*d_wet0_F_x;
+    f_by[1] = G[1]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[3]*(G[1]*d_material_x_F_x - d_w_y_F_x) + c_place_y*d_wet0_F_x;
+    f_by[2] = -G[0]*d_w_rate_x_F_x - G[2]*d_w_rate_y_F_x + d_w_x_F_x;
+    f_by[3] = -G[1]*d_w_rate_x_F_x - G[3]*d_w_rate_y_F_x + d_w_y_F_x;
+    f_by[4] = d_th1_F_x;
+    f_by[5] = 0.0;
+    f_by[6] = G[0]*(G[2]*d_material_y_F_y - d_w_x_F_y) + G[2]*(G[3]*d_material_y_F_y - d_w_y_F_y) + c_place_x*d_wet0_F_y;
+    f_by[7] = G[1]*(G[2]*d_material_y_F_y - d_w_x_F_y) + G[3]*(G[3]*d_material_y_F_y - d_w_y_F_y) + c_place_y*d_wet0_F_y;
+    f_by[8] = -G[0]*d_w_rate_x_F_y - G[2]*d_w_rate_y_F_y + d_w_x_F_y;
+    f_by[9] = -G[1]*d_w_rate_x_F_y - G[3]*d_w_rate_y_F_y + d_w_y_F_y;
+    f_by[10] = d_th1_F_y;
+    f_by[11] = 0.0;
+    FU_EACH(g, 6,
+        moment_by[g] = 0.0;)
 }
 #endif
 

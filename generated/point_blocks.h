@@ -19,6 +19,8 @@ typedef struct {
     void (*on_section)(const fu_points *t, const fu_points *d, const fu_points *w, const fu_points *c_section, const fu_points *polar, fu_points *f, fu_points *K);
     void (*inertia_of_cable)(const fu_points *t, const fu_points *t_rate, const fu_points *m, const fu_points *displaced, const fu_points *v, const fu_points *a, const fu_points *U, const fu_points *U_rate, const fu_points *G, const fu_points *wet, const fu_points *up, fu_points *f, fu_points *g, fu_points *power);
     void (*inertia_of_cable_tangent)(const fu_points *t, const fu_points *t_rate, const fu_points *m, const fu_points *displaced, const fu_points *v, const fu_points *a, const fu_points *U, const fu_points *U_rate, const fu_points *G, const fu_points *wet, const fu_points *up, fu_points *f_t, fu_points *f_t_rate, fu_points *f_r, fu_points *f_v, fu_points *g_t, fu_points *g_r, fu_points *g_v);
+    void (*morison_of_cable)(const fu_points *t, const fu_points *t_rate, const fu_points *m, const fu_points *displaced, const fu_points *v, const fu_points *a, const fu_points *U, const fu_points *U_rate, const fu_points *G, const fu_points *wet, const fu_points *up, fu_points *f, fu_points *g, fu_points *power);
+    void (*morison_of_cable_tangent)(const fu_points *t, const fu_points *t_rate, const fu_points *m, const fu_points *displaced, const fu_points *v, const fu_points *a, const fu_points *U, const fu_points *U_rate, const fu_points *G, const fu_points *wet, const fu_points *up, fu_points *f_t, fu_points *f_t_rate, fu_points *f_r, fu_points *f_v, fu_points *g_t, fu_points *g_r, fu_points *g_v);
     void (*impulse_of_cable)(const fu_points *t, const fu_points *w, const fu_points *m, fu_points *p, fu_points *M);
 } fu_drag_blocks;
 

@@ -220,13 +220,15 @@ static const fu_drag_kernels drags[] = {
     {"drag", 3, drag_along_cable, drag_force_along_cable, drag_lift_along_cable, drag_on_section, drag_on_point,
      drag_on_foil, drag_impulse_of_cable, drag_inertia_of_cable, drag_inertia_of_cable_tangent, drag_inertia_step,
      drag_inertia_of_span, drag_inertia_of_span_tangent, drag_impulse_of_point, drag_inertia_of_point,
-     drag_inertia_of_point_tangent, drag_inertia_of_point_step, drag_wet_sphere, drag_wet_section, drag_wet_column},
+     drag_inertia_of_point_tangent, drag_inertia_of_point_step, drag_morison_of_cable, drag_morison_of_cable_tangent,
+     drag_morison_of_point, drag_morison_of_point_tangent, drag_wet_sphere, drag_wet_section, drag_wet_column},
     {"planar_drag", 2, planar_drag_along_cable, planar_drag_force_along_cable, 0, 0, planar_drag_on_point,
      planar_drag_on_foil, planar_drag_impulse_of_cable, planar_drag_inertia_of_cable,
      planar_drag_inertia_of_cable_tangent, planar_drag_inertia_step, planar_drag_inertia_of_span,
      planar_drag_inertia_of_span_tangent, planar_drag_impulse_of_point, planar_drag_inertia_of_point,
-     planar_drag_inertia_of_point_tangent, planar_drag_inertia_of_point_step, planar_drag_wet_sphere,
-     planar_drag_wet_section, planar_drag_wet_column},
+     planar_drag_inertia_of_point_tangent, planar_drag_inertia_of_point_step, planar_drag_morison_of_cable,
+     planar_drag_morison_of_cable_tangent, planar_drag_morison_of_point, planar_drag_morison_of_point_tangent,
+     planar_drag_wet_sphere, planar_drag_wet_section, planar_drag_wet_column},
 };
 
 static const fu_frame_kernels frames[] = {
@@ -938,6 +940,10 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(drag_inertia_of_point, vvvsvvvvvvv_3) \
     X(drag_inertia_of_point_tangent, vvvsvvvvvvv_2) \
     X(drag_inertia_of_point_step, vvvvvvv_4) \
+    X(drag_morison_of_cable, vvvsvvvvvvv_3) \
+    X(drag_morison_of_cable_tangent, vvvsvvvvvvv_7) \
+    X(drag_morison_of_point, vvvsvvvvvvv_3) \
+    X(drag_morison_of_point_tangent, vvvsvvvvvvv_2) \
     X(drag_wet_sphere, v_4) \
     X(drag_wet_section, v_4) \
     X(drag_wet_column, vv_4) \
@@ -955,6 +961,10 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(planar_drag_inertia_of_point, vvvsvvvvvvv_3) \
     X(planar_drag_inertia_of_point_tangent, vvvsvvvvvvv_2) \
     X(planar_drag_inertia_of_point_step, vvvvvvv_4) \
+    X(planar_drag_morison_of_cable, vvvsvvvvvvv_3) \
+    X(planar_drag_morison_of_cable_tangent, vvvsvvvvvvv_7) \
+    X(planar_drag_morison_of_point, vvvsvvvvvvv_3) \
+    X(planar_drag_morison_of_point_tangent, vvvsvvvvvvv_2) \
     X(planar_drag_wet_sphere, v_4) \
     X(planar_drag_wet_section, v_4) \
     X(planar_drag_wet_column, vv_4) \

@@ -350,6 +350,7 @@ FLUIDS: dict[str, Callable[[Site], object]] = {
     "none": lambda on: None,
     "drag": _drag,
     "added mass": partial(_drag, added_mass=1.0, added_mass_tangential=0.1),
+    "added mass by Morison": partial(_drag, added_mass=1.0, added_mass_tangential=0.1, added_mass_form="morison"),
     "lift": partial(_drag, lift=0.3),
     "polar": lambda on: _drag(on, {"velocity": (0, 0.3, 0)}, normal=0.0, polar=POLAR, chord=(0, -1, 0.1)),
     "current that changes": partial(_drag, fluid={"velocity": (0.3, 0, 0), "scale": SIGNALS["harmonic"]},
@@ -362,6 +363,7 @@ FLUIDS: dict[str, Callable[[Site], object]] = {
     "added mass of a point mass": partial(_mass_drag, added_mass=0.5),
     "drag of a body": partial(_body_drag, coefficient=0.5, volume=1e-5, at=(0, 0.01, 0)),
     "added mass of a body": partial(_body_drag, added_mass=0.5, volume=1e-5),
+    "added mass of a body by Morison": partial(_body_drag, added_mass=0.5, volume=1e-5, added_mass_form="morison"),
     "polar of a body": partial(_body_drag, polar=BODY_POLAR, chord=(1, 0, 0)),
     "lift of a body": partial(_body_drag, lift=0.2)}
 

@@ -16,6 +16,9 @@ rate of c in that of the impulse, and the derivative of T by the place. At a ver
 force is half of that of von Karman (NACA TN 321, 1929), c' m v^2/R, who has the first alone. In his model the other
 half is lost to the jet, which has no part in T: here energy is conserved, and a body that leaves the water regains it.
 
+Morison's equation has the force c (M (a - DU/Dt) - m_d DU/Dt) alone, on the left side: across a cable
+C rho V a_n - (1 + C) rho V (DU/Dt)_n. It has neither a force on the slope nor a moment (`_morison`).
+
 Along a span of a rope w is that of the material, and a point of quadrature moves past it with the velocity y of a place
 at a constant share of the length l. The kernels give the derivatives p, g and b of c T by v, the slope and the place,
 and the rate (l p)'/l at that point; span_kinetic.py has the generalised forces.
@@ -23,6 +26,7 @@ and the rate (l p)'/l at that point; span_kinetic.py has the generalised forces.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -35,13 +39,16 @@ from ..codegen.program import DirectionalDerivative, Program, jacobian
 PAST = "velocity of the point past the fluid"
 LENGTH = "Lighthill 1971; Lagrange's equations of T"
 POINT = "Lamb, Hydrodynamics, art. 124; Taylor 1928"
+FORMS = {"inertia": ("", ""), "morison": (" by Morison's equation", "Morison et al. 1950; Hall & Goupee 2015")}
+"""By the kernels' name: end of their description, and a source that is not that of the other form."""
 
 
 def build(name: str, dim: int) -> list[Program]:
     """Return the kernels in space or in the plane, of the family `name`."""
     return [impulse_of_cable(name, dim), of_cable(name, dim), of_cable_tangent(name, dim), of_cable_step(name, dim),
             of_span(name, dim), of_span_tangent(name, dim),
-            impulse_of_point(name, dim), of_point(name, dim), of_point_tangent(name, dim), of_point_step(name, dim)]
+            impulse_of_point(name, dim), of_point(name, dim), of_point_tangent(name, dim), of_point_step(name, dim),
+            *(build(name, dim, "morison") for build in (of_cable, of_cable_tangent, of_point, of_point_tangent))]
 
 
 def _input_masses(p: Program) -> tuple[sp.Symbol, sp.Expr]:
@@ -127,15 +134,37 @@ def _by_motion(p: Program, name: str, values: np.ndarray, flow: Flow) -> tuple[n
     return by_place, by_w - by_w_rate.dot(flow.G) + by_v
 
 
-def _forces(p: Program, flow: Flow, impulse: np.ndarray, impulse_rate: np.ndarray) -> tuple[np.ndarray, sp.Expr]:
+Added = Callable[[np.ndarray], np.ndarray]
+"""Returns M times a vector."""
+
+
+def _forces(p: Program, form: str, flow: Flow, impulse: np.ndarray, impulse_rate: np.ndarray, added: Added
+            ) -> tuple[np.ndarray, sp.Expr]:
     """Return the force on a particle, on the left side of the equations of motion, and the external power.
 
     Lagrange's equations of c T for the wet part c: the rate of c p, G' c p, less T times the derivative of c by the
     place; and less the force of the undisturbed fluid on the mass that it displaces.
     """
+    if form == "morison":
+        return _morison(p, flow, impulse, impulse_rate, added)
     of = _parts(p, flow, impulse, impulse_rate)
     force = of.rate + of.strained - of.carried - of.energy * flow.part_by_place
     return p.vector("F", force), of.power(flow)
+
+
+def _morison(p: Program, flow: Flow, impulse: np.ndarray, impulse_rate: np.ndarray, added: Added
+             ) -> tuple[np.ndarray, sp.Expr]:
+    """Return the same of Morison's equation: M times the acceleration past that of the fluid, a - DU/Dt = w' + G w.
+
+    It follows from no energy. With T as a kinetic energy the external power is its rate less the power on the particle.
+    """
+    displaced = p.symbols["displaced"].item()
+    p.stage("force on the particle")
+    past = p.vector("past_rate", flow.w_rate + flow.G.dot(flow.w))
+    force = p.vector("F", flow.part * (added(past) - displaced * flow.material))
+    part_rate = p.define("c_rate", flow.part_by_place.dot(flow.v))
+    rate = flow.part * (flow.w_rate.dot(impulse) + flow.w.dot(impulse_rate)) + part_rate * flow.w.dot(impulse)
+    return force, rate / 2 - force.dot(flow.v)
 
 
 @dataclass(frozen=True)
@@ -166,7 +195,9 @@ def _parts(p: Program, flow: Flow, impulse: np.ndarray, impulse_rate: np.ndarray
 
 
 def _cable(p: Program, dim: int, drifts: bool = False) -> tuple[Any, ...]:
-    """Return slope and rate, the flow, impulse and its rate of a length that is all wet, and the force on the slope."""
+    """Return slope and rate, the flow, impulse and its rate of a length that is all wet, its M, and the force on the
+    slope.
+    """
     t, t_rate = p.input("t", dim, "1", "slope r_x of the axis"), p.input("t_rate", dim, "1/s", "its rate")
     m = p.input("m", 2, "kg/m", "added masses of a length of the undeformed cable, across and along")
     p.input("displaced", (), "kg/m", "mass of the fluid that a length displaces")
@@ -181,29 +212,40 @@ def _cable(p: Program, dim: int, drifts: bool = False) -> tuple[Any, ...]:
     along = p.define("w_t", i.dot(w))
     along_rate = p.define("w_t_rate", i_rate.dot(w) + i.dot(w_rate))
     impulse = p.vector("P", normal * w - less * along * i)
+
+    def added(x: np.ndarray) -> np.ndarray:
+        return np.asarray(normal * x - p.define("less_x_t", less * i.dot(x)) * i)
+
     impulse_rate = p.vector("P_rate", normal * w_rate - less * (along_rate * i + along * i_rate))
     p.stage("derivative of the kinetic energy by the slope")
     on_slope = p.vector("G_t", -p.define("pull", flow.part * less * inverse * along) * (w - along * i))
-    return t, t_rate, flow, impulse, impulse_rate, on_slope
+    return t, t_rate, flow, impulse, impulse_rate, added, on_slope
 
 
-def of_cable(name: str, dim: int) -> Program:
-    """Return the kernel of the force of the fluid a length of cable, and of that on the slope."""
-    p = Program(f"{name}_inertia_of_cable", "force of the inertia of the fluid on a length of cable", LENGTH)
-    _, _, flow, impulse, impulse_rate, on_slope = _cable(p, dim)
-    force, power = _forces(p, flow, impulse, impulse_rate)
+def _cable_forces(p: Program, dim: int, form: str) -> tuple[Any, ...]:
+    """Return slope and rate, the flow, the forces on particle and slope, and the external power."""
+    t, t_rate, flow, impulse, impulse_rate, added, on_slope = _cable(p, dim)
+    force, power = _forces(p, form, flow, impulse, impulse_rate, added)
+    return t, t_rate, flow, force, 0 * on_slope if form == "morison" else on_slope, power
+
+
+def of_cable(name: str, dim: int, form: str = "inertia") -> Program:
+    """Return the kernel of the force of the fluid a length of cable, and of that on the slope; form: a key of FORMS."""
+    p = Program(f"{name}_{form}_of_cable", "force of the inertia of the fluid on a length of cable" + FORMS[form][0],
+                FORMS[form][1] or LENGTH)
+    _, _, _, force, on_slope, power = _cable_forces(p, dim, form)
     p.output("f", force, "N/m", "force on the particle, on the left side of the equations of motion")
     p.output("g", on_slope, "N", "derivative of c T by t")
     p.output("power", [power], "W/m", "external power of the fluid, with T as a kinetic energy")
     return p
 
 
-def of_cable_tangent(name: str, dim: int) -> Program:
+def of_cable_tangent(name: str, dim: int, form: str = "inertia") -> Program:
     """Return the kernel of the derivatives of the force of the fluid on a length of cable, and of that on the slope."""
-    p = Program(f"{name}_inertia_of_cable_tangent", "derivatives of the force of the inertia of the fluid on a cable",
-                f"derivatives of {LENGTH}")
-    t, t_rate, flow, impulse, impulse_rate, on_slope = _cable(p, dim)
-    force, _ = _forces(p, flow, impulse, impulse_rate)
+    p = Program(f"{name}_{form}_of_cable_tangent",
+                "derivatives of the force of the inertia of the fluid on a cable" + FORMS[form][0],
+                f"derivatives of {FORMS[form][1] or LENGTH}")
+    t, t_rate, flow, force, on_slope, _ = _cable_forces(p, dim, form)
     p.stage("derivatives")
     for output, values, by in (("f", force, {"t": t, "t_rate": t_rate}), ("g", on_slope, {"t": t})):
         for key, symbols in by.items():
@@ -219,7 +261,7 @@ def _span(p: Program, dim: int) -> tuple[Any, ...]:
     last derivative less the force on the displaced mass, and the external power.
     """
     growth = p.input("growth", (), "1/s", "l'/l of the length of the element")
-    t, t_rate, flow, impulse, impulse_rate, on_slope = _cable(p, dim, drifts=True)
+    t, t_rate, flow, impulse, impulse_rate, _, on_slope = _cable(p, dim, drifts=True)
     of = _parts(p, flow, impulse, impulse_rate, growth)
     by_place = p.vector("b", of.energy * flow.part_by_place - of.strained)
     rate = p.vector("x", of.rate - of.carried)
@@ -311,7 +353,7 @@ def impulse_of_point(name: str, dim: int) -> Program:
     return p
 
 
-def _point(p: Program, dim: int) -> tuple[Any, ...]:
+def _point(p: Program, dim: int, form: str) -> tuple[Any, ...]:
     """Return axes, angular velocity, flow, force, moment and external power of the fluid at a point of a body."""
     A, M = mass_of_point(p, dim)
     omega = p.input("omega", 3 if dim == 3 else 1, "rad/s", "angular velocity in global axes")
@@ -323,24 +365,27 @@ def _point(p: Program, dim: int) -> tuple[Any, ...]:
     impulse_rate = p.vector("P_rate", M.dot(rest) + cross(omega, impulse))
     moment = np.array([p.define(f"moment{k}", flow.part * value)
                        for k, value in enumerate(moment_of(flow.w, impulse))])
-    return A, omega, flow, moment, *_forces(p, flow, impulse, impulse_rate)
+    moment = 0 * moment if form == "morison" else moment
+    return A, omega, flow, moment, *_forces(p, form, flow, impulse, impulse_rate, M.dot)
 
 
-def of_point(name: str, dim: int) -> Program:
+def of_point(name: str, dim: int, form: str = "inertia") -> Program:
     """Return the kernel of the force and the moment of the fluid at a point of a body."""
-    p = Program(f"{name}_inertia_of_point", "force and moment of the inertia of the fluid on a body", POINT)
-    *_, moment, force, power = _point(p, dim)
+    p = Program(f"{name}_{form}_of_point", "force and moment of the inertia of the fluid on a body" + FORMS[form][0],
+                FORMS[form][1] or POINT)
+    *_, moment, force, power = _point(p, dim, form)
     p.output("f", force, "N", "force at the point, on the left side of the equations of motion")
     p.output("moment", moment, "N m", "c w x p")
     p.output("power", [power], "W", "external power of the fluid, with T as a kinetic energy")
     return p
 
 
-def of_point_tangent(name: str, dim: int) -> Program:
+def of_point_tangent(name: str, dim: int, form: str = "inertia") -> Program:
     """Return the kernel of the derivatives of force and moment of the fluid at a point of a body."""
-    p = Program(f"{name}_inertia_of_point_tangent", "derivatives of force and moment of the inertia of the fluid",
-                f"derivatives of {POINT}")
-    A, omega, flow, moment, force, _ = _point(p, dim)
+    p = Program(f"{name}_{form}_of_point_tangent",
+                "derivatives of force and moment of the inertia of the fluid" + FORMS[form][0],
+                f"derivatives of {FORMS[form][1] or POINT}")
+    A, omega, flow, moment, force, _ = _point(p, dim, form)
     p.stage("derivatives")
     turns = [DirectionalDerivative(p, f"d_th{k + 1}", turned(A, axis))
              for k, axis in enumerate(np.eye(len(omega), dtype=int))]

@@ -250,6 +250,9 @@ def _check_added_mass(drag: Drag, displaced: float, name: str) -> None:
     if drag.added_mass is None and drag.added_mass_tangential:
         raise SceneError(drag.where, "added_mass_tangential is given without added_mass",
                          "give added_mass, that across the cable: 1 for a round one, 0 for none")
+    if drag.added_mass is None and drag.added_mass_form != Drag.model_fields["added_mass_form"].default:
+        raise SceneError(drag.where, "added_mass_form is given without added_mass",
+                         "give added_mass: 0 for the acceleration of the fluid alone")
     if drag.added_mass is not None and displaced == 0:
         raise SceneError(drag.where, "added_mass is a multiple of the displaced mass, which is zero",
                          f"give {name}")

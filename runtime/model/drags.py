@@ -113,6 +113,7 @@ def _in_fluid(part: Drag, fluid: Fluid, builder: ModelBuilder, stretch: UniformP
         fluid=fluid, polar=part.polar,
         entries=table | _profile(fluid) | _foil(part, fluid, dim) | {
             "extent": part.extent(section), "displaced": displaced, "added": (),
+            "is_morison": part.added_mass_form == "morison",
             "is_foil": part.polar is not None or (line is None and part.lift != 0)})
     if model.has_inertia:
         added = part.added_of_body(dim) if line is None else part.added_of_cable()

@@ -24,6 +24,7 @@ from .validation import (
     finite,
     not_negative,
     number,
+    one_of,
     place_on,
     positive,
     show,
@@ -35,11 +36,14 @@ if TYPE_CHECKING:
     from .cable import Cable
     from .rope import Rope
 
+FORMS = ("lagrange", "morison")
+"""Forms of the inertia of the fluid."""
 OF_CABLE = ("start", "stop", "normal", "tangential", "lift", "polar", "chord", "diameter", "displaced_area",
-            "added_mass", "added_mass_tangential")
+            "added_mass", "added_mass_tangential", "added_mass_form")
 OF_ROPE = ("normal", "tangential", "lift", "diameter", "displaced_area", "added_mass", "added_mass_tangential")
 OF_MASS = ("area", "coefficient", "volume", "height", "added_mass")
-OF_BODY = ("area", "coefficient", "lift", "polar", "span", "chord", "at", "volume", "height", "added_mass")
+OF_BODY = ("area", "coefficient", "lift", "polar", "span", "chord", "at", "volume", "height", "added_mass",
+           "added_mass_form")
 
 
 def _added_mass(value: Any) -> float | Matrix:
@@ -97,6 +101,8 @@ class Drag(Part):
         with a body at ``at``; three numbers along the axes of a body, or 3x3. The acceleration of the fluid acts with
         (1 + C) times the displaced mass. None: no inertia; 0: only the acceleration of the fluid
     added_mass_tangential: of a cable, C of the motion along it
+    added_mass_form: "lagrange", Lagrange's equations of the kinetic energy of the fluid, or "morison", Morison's
+        equation, of the acceleration alone: with the parts across a cable, ρ V ((1 + C) (DU/Dt)_n - C a_n)
     """
 
     kind = "drag"
@@ -125,6 +131,7 @@ class Drag(Part):
         _added_mass, {"anyOf": [number_schema(minimum=0), list_schema(), list_of_lists("1")]},
         Turning(TENSOR, "on"))] = None
     added_mass_tangential: Annotated[float, not_negative()] = 0.0
+    added_mass_form: Annotated[str, one_of(FORMS)] = FORMS[0]
 
     def off_plane(self) -> Iterator[str]:
         """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""

@@ -312,6 +312,7 @@ class SceneMethods(SceneData):
         height: float | None = None,
         added_mass: float | Numbers | Points | None = None,
         added_mass_tangential: float = 0.0,
+        added_mass_form: str = "lagrange",
         name: str | None = None,
     ) -> Drag:
         """Add a Drag, which see."""

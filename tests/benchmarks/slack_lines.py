@@ -47,7 +47,8 @@ PARTS = ("upper", "buoyant", "lower")
 
 
 def lazy_wave(data: LazyWave, elements: tuple[int, ...], fractions: tuple[float, float] | None = None,
-              added_mass: float | None = 1.0, membrane: str = "full", heave: fu.TableSignal | None = None) -> fu.Scene:
+              added_mass: float | None = 1.0, membrane: str = "full", heave: fu.TableSignal | None = None,
+              added_mass_form: str = "lagrange") -> fu.Scene:
     """Return the cable, drawn straight from the hang-off to the anchor.
 
     fractions: of the distance at which its parts are drawn to meet; by default those of their lengths. heave: vertical
@@ -67,7 +68,7 @@ def lazy_wave(data: LazyWave, elements: tuple[int, ...], fractions: tuple[float,
                                               second_moment_about_z=SECOND_MOMENT),
                     material=fu.Material(youngs_modulus=MODULUS, poisson_ratio=0.3, density=mass / AREA))
         scene.drag(name, normal=1.2, tangential=0.1, diameter=diameter, displaced_area=np.pi / 4 * diameter**2,
-                   added_mass=added_mass)
+                   added_mass=added_mass, added_mass_form=added_mass_form if added_mass is not None else "lagrange")
         if name != "buoyant":
             scene.contact(name, "bed", stiffness=1e5 * diameter, radius=1e-6, damping=1.0)
     if heave is None:

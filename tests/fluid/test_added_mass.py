@@ -20,6 +20,7 @@ SMALL_STEPS = {("genalpha", 3), ("energy", 3)}  # of second order, where tol is 
 IN_WATER = [pytest.param(*each, marks=[pytest.mark.slow] * (each in SMALL_STEPS))
             for each in product(INTEGRATORS, (2, 3))]
 FOR_JOINTS_AND_MODES = ("genalpha", "explicit", "radau")
+FORMS = ("lagrange", "morison")
 ELEMENTS = ("cable12", "cable8p", "cable18", "beam24", "beam12p")
 G, WATER, RADIUS, STEEL = 9.81, 1000.0, 0.01, 7800.0
 AREA = pi * RADIUS**2
@@ -216,7 +217,7 @@ def test_what_moves_with_the_water_is_carried_by_its_acceleration(dim):
     assert np.abs(run["drag_2.force"][:, 1] - 2 * G - 2 * 0.5 * 0.3 * 2 * pi * np.cos(2 * pi * run.time)).max() < 1e-5
 
 
-def swimming(dim=3, body=True, drag=1.0, amplitude=0.5):
+def swimming(dim=3, body=True, drag=1.0, amplitude=0.5, form="lagrange"):
     """Return a cable, and a body attached by a spring, in a current that grows with height and varies in time."""
     scene = fu.Scene()
     wire = rope(scene, "beam24" if dim == 3 else "cable8p", (1, 0.3, 0), 3, density=1500, youngs_modulus=1e6)
@@ -224,21 +225,22 @@ def swimming(dim=3, body=True, drag=1.0, amplitude=0.5):
     flow = (0.8, 0.2, -0.5) if dim == 3 else (0.8, 0.2, 0)
     scene.fluid("sea", density=WATER, velocity=flow, scale=fu.Harmonic(amplitude=amplitude, frequency=1.0, offset=1.0),
                 profile=fu.TableProfile(height=[-2, 3], factors=[0.4, 2.0]))
-    scene.drag(wire, normal=1.1 * drag, tangential=0.05 * drag, added_mass=1.0, added_mass_tangential=0.1)
+    scene.drag(wire, normal=1.1 * drag, tangential=0.05 * drag, added_mass=1.0, added_mass_tangential=0.1,
+               added_mass_form=form)
     if body:
         out = 0.2 * (dim == 3)
         scene.rigid_body("buoy", mass=3.0, inertia=(0.02, 0.03, 0.04), position=(1.2, 0.3, 0), velocity=(1, -0.5, 0),
                          angular_velocity=(0.5, 1.0, 2.0) if dim == 3 else (0, 0, 2.0))
         scene.spring(("wire", wire.length), ("buoy", (0.1, 0, 0)), stiffness=200.0, length=0.05)
         scene.drag("buoy", area=0.02 * drag, coefficient=0.8, at=(-0.1, 0.05, 0), volume=2e-3,
-                   added_mass=[[0.5, 0.1, 0], [0.1, 0.9, out], [0, out, 0.3]])
+                   added_mass=[[0.5, 0.1, 0], [0.1, 0.9, out], [0, out, 0.3]], added_mass_form=form)
     return scene
 
 
 @cache
-def accurate(dim):
+def accurate(dim, form="lagrange"):
     """Return the reference run, computed once."""
-    return swimming(dim).run(0.2, tol=1e-9, integrator="explicit", output_step=0.05)
+    return swimming(dim, form=form).run(0.2, tol=1e-9, integrator="explicit", output_step=0.05)
 
 
 @pytest.mark.parametrize(("integrator", "dim"), IN_WATER)
@@ -256,7 +258,46 @@ def test_the_energy_of_the_water_is_in_the_balance(integrator, dim):
 def test_newtons_matrix_is_the_derivative_of_its_residual(dim, bodies):
     """A cable in a flow of constant gradient; a body without the change of its point's acceleration."""
     allowed = 2e-2 if bodies else 1e-6
-    assert error_by_drags(swimming(dim, bodies, amplitude=0.0)) < allowed
+    for form in FORMS:
+        assert error_by_drags(swimming(dim, bodies, amplitude=0.0, form=form)) < allowed
+
+
+@pytest.mark.parametrize("integrator", FOR_JOINTS_AND_MODES)
+def test_morisons_equation_has_other_forces_and_a_balance(integrator):
+    """The work beyond the change of the kinetic energy of the water is external."""
+    run, best = swimming(2, form="morison").run(0.2, tol=1e-6, integrator=integrator, output_step=0.05), {
+        form: accurate(2, form)["wire.nodal_vectors"][:, :, 0] for form in FORMS}
+    assert unaccounted(run) < 1e-5
+    assert np.abs(run["wire.nodal_vectors"][:, :, 0] - best["morison"]).max() < 2e-6
+    assert np.abs(best["morison"] - best["lagrange"]).max() > 1e-4
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("body", ["cable", "ball"])
+def test_forces_on_what_is_held_in_a_sheared_stream(form, body, validated):
+    """At rest with U = (u(y) s(t), 0, 0): (1 + C) rho V u s', and by Lagrange's equations C rho V grad(U^2/2)."""
+    scene, slope, C, volume = fu.Scene(gravity=(0, 0, 0)), 0.4, 0.8, 2 * AREA
+    scene.fluid(density=WATER, velocity=(1, 0, 0), profile=fu.TableProfile(height=[-2, 3], factors=[1 - 2 * slope,
+                                                                                                 1 + 3 * slope]),
+                scale=fu.TableSignal(time=[0, 1], value=[1.0, 3.0], interpolation="linear"))
+    more = {"added_mass": C, "added_mass_form": form}
+    if body == "cable":  # along z: x and y are across
+        wire = scene.cable("wire", start=(0, 0, 0), end=(0, 0, 2), elements=2, element="cable12", up=(0, 1, 0),
+                           section=fu.Circle(radius=RADIUS),
+                           material=fu.Material(youngs_modulus=1e13, poisson_ratio=0.0, density=STEEL))
+        for s in (0, 2):
+            scene.clamp(wire, s=s)
+        scene.drag(wire, **more)
+    else:
+        scene.rigid_body("ball", mass=1.0, inertia=(1, 1, 1), position=(0, 0, 0))
+        scene.joint("weld", "ball", (0, 0, 0))
+        scene.drag("ball", volume=volume, **more)
+    force = scene.equilibrium()["drag_1.force"]
+    exact = (1 + C) * WATER * volume * 2.0
+    validated("Fluid", f"held {body} in a sheared stream that accelerates, {form}", "force", exact, float(force[0]),
+              unit="N", bound=1e-6, source="closed form")
+    lift = 0.0 if form == "morison" else C * WATER * volume * slope
+    assert force[1] == pytest.approx(lift, abs=1e-6 * exact)
 
 
 def test_a_kink_of_the_flow_is_a_jump_of_the_force():
@@ -317,6 +358,8 @@ REFUSED = {
     "matrix": (lambda s: s.drag("wire", added_mass=(1, 1, 1)), "is one number"),
     "tangential of a body": (lambda s: s.drag("A", volume=1, added_mass=1, added_mass_tangential=1),
                              "takes no added_mass_tangential"),
+    "form": (lambda s: s.drag("wire", normal=1, added_mass_form="morison"), "form is given without added_mass"),
+    "form unknown": (lambda s: s.drag("wire", added_mass=1, added_mass_form="airy"), "known: lagrange, morison"),
     "negative": (lambda s: s.drag("wire", added_mass=-1), "must not be negative"),
     "indefinite": (lambda s: s.drag("A", volume=1, added_mass=(1, -1, 1)), "must not be negative in any direction"),
     "not symmetric": (lambda s: s.drag("A", volume=1, added_mass=[[1, 1, 0], [0, 1, 0], [0, 0, 1]]), "be symmetric"),
@@ -418,3 +461,8 @@ def test_a_run_from_rest_in_a_sheared_current_stays_there():
     assert rest["tether.force"][1] == pytest.approx(-(2.0 * G + lift), rel=1e-6)
     run = scene.run(0.5, tol=1e-6, initial=rest)
     assert np.abs(run["buoy.position"] - rest["buoy.position"]).max() < 1e-8
+
+
+def test_the_energy_scheme_refuses_morisons_equation():
+    with pytest.raises(fu.SceneError, match='integrator "energy" has no discrete gradient of it'):
+        swimming(2, form="morison").run(0.1, tol=1e-4, integrator="energy", output_step=0.1)

@@ -26,8 +26,10 @@ def _along_cable(s: State, t: Any = 0, j: int = 0, name: str = "") -> Any:
 def added_mass(family: CouplingFamily) -> list[Relation]:
     """Return the relations of impulses, of forces and moments with their derivatives, and of those over a step."""
     return [*_impulses(family.dim), *_forces("inertia_of_cable", family.dim), *_on_slope(family.dim),
-            *_forces("inertia_of_point", family.dim), *_on_body(family.dim), *_along_span(family.dim),
-            *_cable_over_step(), *_body_over_step()]
+            *_forces("inertia_of_point", family.dim), *_on_body("inertia_of_point", family.dim),
+            *_along_span(family.dim), *_cable_over_step(), *_body_over_step(),
+            *_morison("morison_of_cable", family.dim), *_morison("morison_of_point", family.dim),
+            *_on_body("morison_of_point", family.dim)]
 
 
 def _impulses(dim: int) -> list[Relation]:
@@ -47,7 +49,21 @@ def _impulses(dim: int) -> list[Relation]:
 
 def _impulse(kernel: str, k: Any, s: State) -> Any:
     """Return the impulse of what is all wet, at the velocity past the fluid."""
-    return k(kernel.replace("inertia", "impulse"), {**s, "w": s["v"] - s["U"]})["p"]
+    return k(_impulse_kernel(kernel), {**s, "w": s["v"] - s["U"]})["p"]
+
+
+def _impulse_kernel(kernel: str) -> str:
+    return "impulse_of_" + kernel.split("_of_")[1]
+
+
+def _material(s: State) -> Any:
+    """Return the acceleration of the fluid, DU/Dt."""
+    return s["U_rate"] + s["G"].dot(s["U"])
+
+
+def _carried(s: State) -> Any:
+    """Return the force on the mass of the displaced fluid."""
+    return s["displaced"] * s["wet"][0] * _material(s)
 
 
 def _energy(kernel: str, k: Any, s: State) -> Any:
@@ -71,19 +87,14 @@ def _later(kernel: str, s: State, t: Any) -> State:
     """Return the state at the time t: the point moves on, and the flow changes with its place and by its own rate."""
     moved = _displaced(s, s["v"], t)
     moved |= {"U": moved["U"] + t * s["U_rate"], "v": s["v"] + t * s["a"]}
-    return _swung(moved, s["omega"], t) if kernel == "inertia_of_point" else {**moved, "t": s["t"] + t * s["t_rate"]}
+    return _swung(moved, s["omega"], t) if kernel.endswith("point") else {**moved, "t": s["t"] + t * s["t_rate"]}
 
 
 def _forces(kernel: str, dim: int) -> list[Relation]:
     """Return the relations of the force on a particle: Lagrange's equations of the energy that `_energy` returns."""
-    tangent = f"{kernel}_tangent"
-
     def impulse(k, s, t, j):
         later = _later(kernel, s, t)
         return later["wet"][0] * _impulse(kernel, k, later)
-
-    def carried(s):
-        return s["displaced"] * s["wet"][0] * (s["U_rate"] + s["G"].dot(s["U"]))
 
     def by_place(k, s, t, j):
         return _energy(kernel, k, _displaced(s, unit(s["v"], j), t))
@@ -96,22 +107,49 @@ def _forces(kernel: str, dim: int) -> list[Relation]:
 
     def power(k, s, t, j):
         force, strained = k(kernel, s)["f"], s["G"].T.dot(s["wet"][0] * _impulse(kernel, k, s))
-        rate = force + carried(s) - rest(k, s)
-        return carried(s).dot(s["v"]) - rate.dot(s["U"]) - strained.dot(s["v"])
+        rate = force + _carried(s) - rest(k, s)
+        return _carried(s).dot(s["v"]) - rate.dot(s["U"]) - strained.dot(s["v"])
+
+    return [
+        Relation(kernel, "f", "rate of c p, where T does not depend on the place", 1, impulse,
+                 of=lambda k, s: k(kernel, s)["f"] + _carried(s) - rest(k, s)),
+        Relation(kernel, "f", "minus the derivative of c T by the place", 1, by_place, dim,
+                 of=lambda k, s: -rest(k, s)),
+        Relation(kernel, "power", "of the displaced fluid, and of U", 0, power),
+        *(_derivatives(kernel, dim) if kernel.endswith("cable") else []),
+    ]
+
+
+def _derivatives(kernel: str, dim: int) -> list[Relation]:
+    """Return the relations of the derivatives of the force on a length of cable."""
+    tangent = f"{kernel}_tangent"
 
     def moved(k, s, t, j):
         return k(kernel, _displaced(s, unit(s["v"], j), t))["f"]
 
-    return [
-        Relation(kernel, "f", "rate of c p, where T does not depend on the place", 1, impulse,
-                 of=lambda k, s: k(kernel, s)["f"] + carried(s) - rest(k, s)),
-        Relation(kernel, "f", "minus the derivative of c T by the place", 1, by_place, dim,
-                 of=lambda k, s: -rest(k, s)),
-        Relation(kernel, "power", "of the displaced fluid, and of U", 0, power),
-        *([Relation(tangent, "f_r", "df by the place", 1, moved, dim),
-           *(Relation(tangent, f"f_{name}", f"df by {name}", 1, from_kernel(kernel, "f", **{name: entry(name)}), dim)
-             for name in ("v", "t", "t_rate"))] if kernel == "inertia_of_cable" else []),
-    ]
+    return [Relation(tangent, "f_r", "df by the place", 1, moved, dim),
+            *(Relation(tangent, f"f_{name}", f"df by {name}", 1, from_kernel(kernel, "f", **{name: entry(name)}), dim)
+              for name in ("v", "t", "t_rate"))]
+
+
+def _morison(kernel: str, dim: int) -> list[Relation]:
+    """Return the relations of the force of Morison's equation, which is all of it, and of its external power."""
+    def force(k, s, t, j):
+        past = {**s, "w": s["a"] - _material(s)}
+        return s["wet"][0] * k(_impulse_kernel(kernel), past)["p"] - _carried(s)
+
+    def power(k, s):
+        found = k(kernel, s)
+        return found["power"] + found["f"].dot(s["v"])
+
+    beside, tangents = ("g", ("g_t", "g_v", "g_r")) if kernel.endswith("cable") else ("moment", ())
+    return [Relation(kernel, "f", "c (M (a - DU/Dt) - m_d DU/Dt)", 0, force),
+            Relation(kernel, "power", "rate of c T less the power on the particle", 1,
+                     lambda k, s, t, j: _energy(kernel, k, _later(kernel, s, t)), of=power),
+            Relation(kernel, beside, "nil", 0, lambda k, s, t, j: 0 * k(kernel, s)[beside]),
+            *(Relation(f"{kernel}_tangent", each, "nil", 0,
+                       lambda k, s, t, j, each=each: 0 * k(f"{kernel}_tangent", s)[each]) for each in tangents),
+            *(_derivatives(kernel, dim) if tangents else [])]
 
 
 def _on_slope(dim: int) -> list[Relation]:
@@ -129,9 +167,9 @@ def _on_slope(dim: int) -> list[Relation]:
     ]
 
 
-def _on_body(dim: int) -> list[Relation]:
+def _on_body(kernel: str, dim: int) -> list[Relation]:
     """Return the relations of the moment, and of the derivatives by place, velocity, a turn, angular velocity."""
-    kernel, turns = "inertia_of_point", 3 if dim == 3 else 1
+    turns = 3 if dim == 3 else 1
     axes = np.eye(turns, dtype=int)
 
     def minus_energy(k, s, t, j):
@@ -150,7 +188,8 @@ def _on_body(dim: int) -> list[Relation]:
             return k(kernel, s)[output]
         return path
 
-    return [Relation(kernel, "moment", "minus the derivative of c T by a turn", 1, minus_energy, turns),
+    return [*([Relation(kernel, "moment", "minus the derivative of c T by a turn", 1, minus_energy, turns)]
+              if kernel == "inertia_of_point" else []),
             *(Relation(f"{kernel}_tangent", f"{output}_by", f"d{output} by place, velocity, turn, angular velocity", 1,
                        moved(output), 2 * (dim + turns)) for output in ("f", "moment"))]
 
@@ -173,13 +212,10 @@ def _along_span(dim: int) -> list[Relation]:
         later |= {"U": later["U"] + t * s["U_rate"], "v": s["v"] + t * s["a"], "t": s["t"] + t * s["t_rate"]}
         return (1 + t * s["growth"]) * k(kernel, later)["T_v"]
 
-    def carried(s):
-        return s["displaced"] * s["wet"][0] * (s["U_rate"] + s["G"].dot(s["U"]))
-
     def power(k, s, t, j):
         found = k(kernel, s)
-        rate = found["rate"] + carried(s)
-        return carried(s).dot(s["v"]) - rate.dot(s["U"]) - found["T_v"].dot(s["G"].dot(s["y"]))
+        rate = found["rate"] + _carried(s)
+        return _carried(s).dot(s["v"]) - rate.dot(s["U"]) - found["T_v"].dot(s["G"].dot(s["y"]))
 
     def gradient(k, s):
         return np.concatenate([k(kernel, s)[f"T_{key}"] for key in "rtv"])
@@ -199,7 +235,7 @@ def _along_span(dim: int) -> list[Relation]:
         Relation(kernel, "T_r", "d c T by the place", 1, displaced(energy), dim),
         *(Relation(kernel, f"T_{key}", f"d c T by {key}", 1, moved(energy, key), dim) for key in "tv"),
         Relation(kernel, "rate", "rate of l c p over l, with the force on the displaced mass", 1, impulse,
-                 of=lambda k, s: k(kernel, s)["rate"] + carried(s)),
+                 of=lambda k, s: k(kernel, s)["rate"] + _carried(s)),
         Relation(kernel, "power", "of the displaced fluid, and of U", 0, power),
         Relation(tangent, "second", "d (T_r, T_t, T_v) by place, slope, velocity", 1, along(gradient, "tv"), 3 * dim),
         Relation(tangent, "rate_by", "d rate by place, slope, velocity, and their rates", 1,

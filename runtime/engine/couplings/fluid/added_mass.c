@@ -4,7 +4,8 @@
  * mass in an accelerated fluid.
  *
  * The kernels give the force on a particle, that on the slope of a cable or the moment on a body, and the external
- * power of the fluid, with T counted as kinetic energy. M a belongs to the inertia: Newton's matrix and that of eq 38
+ * power of the fluid, with T counted as kinetic energy. Those of Morison's equation have another force, with the same
+ * M and the same T. M a belongs to the inertia: Newton's matrix and that of eq 38
  * contain M. The matrix neglects second derivatives of U: Newton's method converges without them.
  */
 #include "bodies/model.h"
@@ -68,9 +69,9 @@ static surroundings at_body(const fu_model *model, const fu_drag *drag, const fu
 static void on_point(const fu_drag *drag, const fu_attachment_state *end, const double *acceleration,
                      const surroundings *of, double left[3], double moment[3], double *external)
 {
-    drag->kernel->inertia_of_point(end->A, drag->added, end->omega, drag->displaced, end->v, acceleration, of->flow.U,
-                                   of->flow.rate, of->flow.gradient, &of->wet.part, drag->flow.up, left, moment,
-                                   external);
+    (drag->is_morison ? drag->kernel->morison_of_point : drag->kernel->inertia_of_point)(
+        end->A, drag->added, end->omega, drag->displaced, end->v, acceleration, of->flow.U, of->flow.rate,
+        of->flow.gradient, &of->wet.part, drag->flow.up, left, moment, external);
 }
 
 static void on_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
@@ -97,9 +98,9 @@ static void tangent_of_body(const fu_model *model, const fu_drag *drag, const fu
     fu_point_motion motion;
     const surroundings of = at_body(model, drag, state, a, &end, acceleration);
     on_point(drag, &end, acceleration, &of, left, moment, &external);
-    drag->kernel->inertia_of_point_tangent(end.A, drag->added, end.omega, drag->displaced, end.v, acceleration,
-                                           of.flow.U, of.flow.rate, of.flow.gradient, &of.wet.part, drag->flow.up, f_by,
-                                           moment_by);
+    (drag->is_morison ? drag->kernel->morison_of_point_tangent : drag->kernel->inertia_of_point_tangent)(
+        end.A, drag->added, end.omega, drag->displaced, end.v, acceleration, of.flow.U, of.flow.rate, of.flow.gradient,
+        &of.wet.part, drag->flow.up, f_by, moment_by);
     fu_point_motion_at(model, &drag->attachments[0], state, FU_POINT | FU_AXES, left, moment, psi, weights.rate,
                        &motion);
     fu_changes(&motion, dim, f_by, f);

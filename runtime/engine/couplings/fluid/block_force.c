@@ -69,8 +69,9 @@ static void inertia_at(const fu_drag_block *block, fu_points left[3], fu_points 
     const fu_block_constants *c = block->constants;
     const fu_block_motion *at = &block->motion;
     const fu_block_fluid *fluid = &block->fluid;
-    c->kernel->inertia_of_cable(at->r_x, at->r_x_rate, c->added, &c->displaced, at->v, at->a, fluid->U, fluid->rate,
-                                fluid->gradient, fluid->wet, c->up, left, on_slope, power);
+    (c->is_morison ? c->kernel->morison_of_cable : c->kernel->inertia_of_cable)(
+        at->r_x, at->r_x_rate, c->added, &c->displaced, at->v, at->a, fluid->U, fluid->rate, fluid->gradient,
+        fluid->wet, c->up, left, on_slope, power);
 }
 
 void fu_block_inertia(const fu_drag_block *block, fu_points left[3], fu_points on_slope[3])
@@ -167,9 +168,9 @@ FU_INLINE void add_inertia(int dim, const fu_drag_block *block, double rate, con
     const fu_block_motion *at = &block->motion;
     const fu_block_fluid *fluid = &block->fluid;
     fu_points f_t[9], f_t_rate[9], f_r[9], f_v[9], g_t[9], g_r[9], g_v[9];
-    c->kernel->inertia_of_cable_tangent(at->r_x, at->r_x_rate, c->added, &c->displaced, at->v, at->a, fluid->U,
-                                        fluid->rate, fluid->gradient, fluid->wet, c->up, f_t, f_t_rate, f_r, f_v, g_t,
-                                        g_r, g_v);
+    (c->is_morison ? c->kernel->morison_of_cable_tangent : c->kernel->inertia_of_cable_tangent)(
+        at->r_x, at->r_x_rate, c->added, &c->displaced, at->v, at->a, fluid->U, fluid->rate, fluid->gradient,
+        fluid->wet, c->up, f_t, f_t_rate, f_r, f_v, g_t, g_r, g_v);
     for (int i = 0; i < size; ++i) {
         by[i] += *scale * (f_r[i] + rate * f_v[i]);
         by[size + i] += *scale * (f_t[i] + rate * f_t_rate[i]);

@@ -209,10 +209,11 @@ static double step_dissipation(const fu_model *model, const fu_coupling *couplin
     return at->h * power.dissipated;
 }
 
-/* Added mass of ropes has no equations over a step that conserves energy. */
+/* Added mass of ropes has no equations over a step that conserves energy, Morison's equation has no energy. */
 static int has_step(const fu_coupling *coupling)
 {
-    return !(coupling->has_inertia && ((const fu_drag *)coupling)->on.kernel);
+    const fu_drag *drag = (const fu_drag *)coupling;
+    return !(coupling->has_inertia && (drag->on.kernel || drag->is_morison));
 }
 
 static double step_work(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
@@ -280,6 +281,7 @@ static const fu_field fields[] = {
     FU_FIELD(fu_drag, surface, FU_REAL, 0),
     FU_FIELD(fu_drag, bottom, FU_REAL, 0),
     FU_FIELD(fu_drag, displaced, FU_REAL, 0),
+    FU_FIELD(fu_drag, is_morison, FU_INTEGER, 0),
     FU_FIELD_ARRAY(fu_drag, added, FU_REAL),
     FU_FIELD(fu_drag, n_points, FU_INTEGER, 0),
     FU_FIELD(fu_drag, stride, FU_INTEGER, 0),

@@ -68,6 +68,7 @@ typedef struct {
     double extent;          /* half the height of the wetted shape, m */
     double surface, bottom; /* heights of the fluid, m */
     double displaced;       /* mass of the fluid displaced: kg/m, kg */
+    int is_morison;         /* nonzero: inertial forces are those of Morison's equation, not Lagrange's */
     double added[9]; /* added mass: of a cable across and along it, kg/m; of a body in its axes (dim x dim), kg */
     int n_points;    /* of quadrature on an element */
     int stride;      /* points from one element's tables to the next's: 0 for equal elements */
@@ -158,6 +159,7 @@ typedef struct {
 /* Kernels at blocks of points, with their arguments that are the same at all points. */
 typedef struct {
     const fu_drag_blocks *kernel;
+    int is_morison;
     fu_points coefficients[3], lift[2], section[3], added[2], displaced, up[3];
 } fu_block_constants;
 

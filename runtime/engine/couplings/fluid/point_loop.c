@@ -13,7 +13,7 @@ static void broadcast(int n, const double *x, fu_points *out)
 
 static fu_block_constants constants_of(const fu_drag *drag)
 {
-    fu_block_constants out = {.kernel = fu_drag_blocks_of(drag->kernel->name)};
+    fu_block_constants out = {.kernel = fu_drag_blocks_of(drag->kernel->name), .is_morison = drag->is_morison};
     broadcast(3, drag->coefficients, out.coefficients);
     broadcast(2, drag->lift, out.lift);
     broadcast(3, drag->section, out.section);
