@@ -60,7 +60,8 @@ if not _TYPE_CHECKING:  # type checkers read the imports, those of parts/listed.
 
 LAZY = {"Choice": "choice.choice", "Equilibrium": "results.equilibrium", "InitialState": "model.initial_state",
         "LogUniform": "sweeps.parameters", "Modes": "solve.modes.modes", "Uniform": "sweeps.parameters",
-        "load_sweep": "sweeps.dataset", "sweep": "sweeps.sweep", "sweep_cost": "sweeps.sweep"}
+        "load_sweep": "sweeps.dataset", "read_moordyn": "exchange.moordyn", "sweep": "sweeps.sweep",
+        "sweep_cost": "sweeps.sweep"}
 """Modules of names whose imports (SciPy, xarray) take as long as all others, imported on first use."""
 
 

@@ -302,6 +302,25 @@ def _listed(text: str | None) -> list[str] | None:
     return None if text is None else [word.strip() for word in text.split(",") if word.strip()]
 
 
+@app.command("import")
+def import_file(
+    program: Annotated[str, typer.Argument(metavar="PROGRAM", help="that the file is for: moordyn, version 2")],
+    file: Annotated[Path, typer.Argument(metavar="FILE")],
+    output: Annotated[Path | None, typer.Option("-o", "--output", metavar="FILE.toml",
+                                                help="scene file to write (default: beside FILE)")] = None,
+) -> None:
+    """Write a scene file from the input file of another program, and print what it leaves out."""
+    from ..exchange.moordyn import read_moordyn
+
+    if program != "moordyn":
+        raise typer.BadParameter(f"{program!r}: the files of moordyn are read")
+    made, path = read_moordyn(file), output or file.with_suffix(".toml")
+    write_text(path, made.to_toml())
+    for note in made.messages:
+        print(f"note: {note}", file=sys.stderr)
+    print(f"written: {path}")
+
+
 @app.command()
 def scenes() -> None:
     """List the bundled scenes."""

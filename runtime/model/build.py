@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from ..parts.scene_data import SceneData
 from .attachments import ModelBuilder
 from .bodies import body_gravity, body_models, body_weights, configuration_of, dofs_of, velocity_of
 from .border import ACCELERATIONS, NEWTON, elimination
-from .cables import arrays_of, cable_rates, level_tied_slopes
+from .cables import CableArrays, arrays_of, cable_rates, level_tied_slopes
 from .coupling import number
 from .cutting import attached
 from .driven_dofs import DrivenDofs
@@ -63,9 +64,7 @@ def build(scene: SceneData, supplied: bool = False) -> Model:
                   *(velocity_of(body, dim) for body in described)),
         weight=_joined(*(cable.weights for cable in drawn), *(rope.weight for rope in ropes), driven.still,
                        *(body_weights(body, dim) for body in described)),
-        gravity=_joined(*(with_weights(cable.gravity(gravity), of, scene.masses_on(of.name), gravity)
-                          for cable, of in zip(drawn, cables, strict=True)),
-                        *(0 * rope.q for rope in ropes), driven.still,
+        gravity=_joined(*_weights(scene, drawn, cables, gravity), *(0 * rope.q for rope in ropes), driven.still,
                         *(body_gravity(body, gravity) for body in bodies)),
         unknown_of_dof=np.append(reduction.unknown_of_dof, beside_cables).astype(int),
         combinations=reduction.combinations,
@@ -80,6 +79,13 @@ def build(scene: SceneData, supplied: bool = False) -> Model:
         follow(model, rope)
     model.newton, model.accelerations = elimination(model, NEWTON), elimination(model, ACCELERATIONS)
     return model
+
+
+def _weights(scene: SceneData, drawn: list[CableArrays], cables: list[CableModel], gravity: np.ndarray
+             ) -> Iterator[np.ndarray]:
+    """Yield the generalised gravity (coordinates,) of each cable, with that of point masses on it."""
+    for cable, model in zip(drawn, cables, strict=True):
+        yield with_weights(cable.gravity(gravity), model, scene.masses_on(model.name), gravity)
 
 
 def elements_of(cables: list[CableModel]) -> np.ndarray:

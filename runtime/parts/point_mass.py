@@ -3,7 +3,7 @@
 from typing import Annotated
 
 from .part import Part
-from .validation import Name, Reference, place_on, positive
+from .validation import Name, Reference, not_negative, place_on
 
 
 class PointMass(Part):
@@ -14,7 +14,7 @@ class PointMass(Part):
 
     on: the cable
     s: arc-length, m
-    mass: kg
+    mass: kg; 0 where only a fluid acts
     """
 
     kind = "point_mass"
@@ -23,4 +23,4 @@ class PointMass(Part):
     name: Name | None = None
     on: Reference
     s: Annotated[float, place_on("on")]
-    mass: Annotated[float, positive("kg")]
+    mass: Annotated[float, not_negative("kg")]

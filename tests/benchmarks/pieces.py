@@ -1,4 +1,4 @@
-"""Cables of several pieces and with point masses beside closed forms and another program: forces, waves, frequencies.
+"""Cables of several pieces beside closed forms and another program: forces, waves, frequencies.
 
     python tests/benchmarks/pieces.py [--out FILE.csv] [--elements 40]
 

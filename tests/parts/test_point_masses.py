@@ -136,8 +136,8 @@ def test_refusals():
         scene.point_mass("v", s=0.0, mass=1.0, name="x")
     with refused('point_mass "x": s must lie on the cable, in [0, 1] m, got 1.5 m'):
         scene.point_mass("w", s=1.5, mass=1.0, name="x")
-    with refused('point_mass "x": mass must be positive, got 0 kg'):
-        scene.point_mass("w", s=0.5, mass=0.0, name="x")
+    with refused('point_mass "x": mass must not be negative, got -1 kg'):
+        scene.point_mass("w", s=0.5, mass=-1.0, name="x")
     scene.fluid("water", density=1000)
     with refused('drag "x": acts on point_mass "clump" and takes no at; takes area, coefficient, volume, height, '
                  "added_mass"):

@@ -1,0 +1,318 @@
+"""Scenes from input files of MoorDyn-2: lines become cables, points their supports, ties and point masses."""
+
+from __future__ import annotations
+
+import math
+import os
+from typing import Any
+
+import numpy as np
+
+from ..base.deferred import dataclass
+from ..errors import SceneError
+from ..parts.material import Material
+from ..parts.section import GeneralSection
+from ..parts.surface_shapes import Plane
+from ..parts.validation import show, shown
+from ..scene.scene import Scene
+from .moordyn_file import MoorDynFile, Row, named, read_file
+
+DEFAULTS = {"g": 9.80665, "rhow": 1025.0, "wtrdpth": 0.0, "kbot": 3e6, "cbot": 3e5, "frictioncoefficient": 0.0}
+"""Options by their names in small letters, with MoorDyn's defaults."""
+SYNONYMS = {"gravity": "g", "rho": "rhow", "wtrdens": "rhow", "wtrdnsty": "rhow", "kb": "kbot", "cb": "cbot",
+            "depth": "wtrdpth", "wdepth": "wtrdpth", "frictioncoeff": "frictioncoefficient"}
+ENVIRONMENT = {"wavekin": "waves", "currents": "currents"}
+"""Options of what is left out unless they are 0."""
+HELD, MOVED, FREE = ("FIXED", "FIX", "ANCHOR"), ("COUPLED", "CPLD", "VESSEL", "VES", "FAIRLEAD"), (
+    "FREE", "POINT", "CONNECT", "CON")
+"""Words of the attachment of a point: held, moved by the host program, or free."""
+NO_DIAMETER = 1e-3
+"""m: of the section of a line whose diameter is 0, without buoyancy; its stiffness EA and mass stay."""
+DURATION = 60.0
+"""s, of a run of the scene written; the host program of MoorDyn decides on it."""
+BED_RADIUS = 1e-6
+"""m: MoorDyn's bed acts on the centreline."""
+
+
+@dataclass(frozen=True)
+class LineType:
+    """A line type, in the units of its columns."""
+
+    row: Row
+    diameter: float
+    mass: float
+    EA: float
+    BA: float
+    EI: float
+    drag: tuple[float, float]
+    added: tuple[float, float]
+
+    @classmethod
+    def of(cls, row: Row) -> LineType:
+        """Return the type of a line of the table. Raises SceneError."""
+        diameter, mass, EA, BA, EI = (row.number(k, what) for k, what in enumerate(
+            ("Diam", "Mass/m", "EA", "BA/-zeta", "EI"), start=1))
+        Cd, Ca, Cdt, Cat = (row.number(k, what, 0.0) for k, what in enumerate(("Cd", "Ca", "CdAx", "CaAx"), start=6))
+        for what, value, least in (("Diam", diameter, 0.0), ("EI", EI, 0.0), ("Cd", Cd, 0.0), ("Ca", Ca, 0.0),
+                                   ("CdAx", Cdt, 0.0), ("CaAx", Cat, 0.0)):
+            if value < least:
+                raise row.refused(f"{what} must not be negative, got {show(value)}")
+        for what, value in (("Mass/m", mass), ("EA", EA)):
+            if not value > 0:
+                raise row.refused(f"{what} must be positive, got {show(value)}")
+        return cls(row, diameter, mass, EA, BA, EI, (Cd, Cdt), (Ca, Cat))
+
+    @property
+    def area(self) -> float:
+        """Return the area of its section, m²."""
+        return math.pi / 4 * (self.diameter or NO_DIAMETER) ** 2
+
+    def section(self) -> GeneralSection:
+        """Return its section, with which the material has its stiffness."""
+        return GeneralSection(area=self.area, second_moment_about_z=self.EI * self.area / self.EA)
+
+    def material(self, segment: float) -> Material:
+        """Return its material; segment: length of a segment, m, on which a damping ratio, -BA, depends."""
+        BA = self.BA if self.BA >= 0 else -self.BA * segment * math.sqrt(self.EA * self.mass)
+        return Material(youngs_modulus=self.EA / self.area, poisson_ratio=0.0, density=self.mass / self.area,
+                        damping_time=BA / self.EA)
+
+
+@dataclass(frozen=True)
+class Point:
+    """A point: how it is held ("held", "moved", "free"), and its place at the start, m."""
+
+    row: Row
+    how: str
+    place: np.ndarray
+    body: str | None
+    mass: float
+    volume: float
+    drag: float
+    added: float
+    force: tuple[float, ...]
+
+    @classmethod
+    def of(cls, row: Row, bodies: dict[str, Body]) -> Point:
+        """Return the point of a line of the table. Raises SceneError."""
+        word = row.word(1, "Attachment").upper()
+        place = np.array([row.number(k, "XYZ"[k - 2]) for k in (2, 3, 4)])
+        M, V = row.number(5, "M", 0.0), row.number(6, "V", 0.0)
+        at = 10 if len(row.words) >= 12 else 7
+        force = tuple(row.number(k, "F") for k in (7, 8, 9)) if at == 10 else (0.0, 0.0, 0.0)
+        drag, added = row.number(at, "CdA", 0.0), row.number(at + 1, "Ca", 0.0)
+        kinds = {word: how for words, how in ((HELD, "held"), (MOVED, "moved"), (FREE, "free")) for word in words}
+        body = word.removeprefix("BODY") if word.startswith("BODY") else None
+        if body is not None:
+            of = named(bodies, body, row, "body")
+            return cls(row, of.how, of.place + of.axes @ place, body if of.how == "free" else None, M, V, drag, added,
+                       force)
+        if word not in kinds:
+            raise row.refused(f"the attachment {shown(row.words[1])} is not read", "known: Fixed, Coupled, Free, Body#")
+        return cls(row, kinds[word], place, None, M, V, drag, added, force)
+
+
+@dataclass(frozen=True)
+class Body:
+    """A body: how it is held, as a `Point`; place in m, and axes (3, 3)."""
+
+    row: Row
+    how: str
+    place: np.ndarray
+    axes: np.ndarray
+
+    @classmethod
+    def of(cls, row: Row) -> Body:
+        """Return the body of a line of the table. Raises SceneError."""
+        word = row.word(1, "Attachment").upper()
+        kinds = {word: how for words, how in ((HELD, "held"), (MOVED, "moved"), (FREE, "free")) for word in words}
+        if word not in kinds:
+            raise row.refused(f"the attachment {shown(row.words[1])} is not read", "known: Fixed, Coupled, Free")
+        place = np.array([row.number(k, ("X0", "Y0", "Z0")[k - 2]) for k in (2, 3, 4)])
+        roll, pitch, yaw = (math.radians(row.number(k, ("r0", "p0", "y0")[k - 5])) for k in (5, 6, 7))
+        if kinds[word] == "free" and (roll or pitch or yaw):
+            raise row.refused("a free body that begins turned is not read", "draw it with its axes along the ground's")
+        (a, b), (c, d), (e, f) = ((math.cos(angle), math.sin(angle)) for angle in (roll, pitch, yaw))
+        turns = np.array([[1, 0, 0], [0, a, -b], [0, b, a]]), np.array([[c, 0, d], [0, 1, 0], [-d, 0, c]]), np.array(
+            [[e, -f, 0], [f, e, 0], [0, 0, 1]])
+        return cls(row, kinds[word], place, turns[0] @ turns[1] @ turns[2])
+
+
+class _Reader:
+    """A scene from a file, and notes on what it leaves out."""
+
+    def __init__(self, file: MoorDynFile):
+        self.file = file
+        self.notes: list[str] = []
+        self.options = self._options()
+        self.bodies = file.by_id("bodies", Body.of)
+        self.points = file.by_id("points", lambda row: Point.of(row, self.bodies))
+        self.types = file.by_id("line types", LineType.of)
+        self.scene = Scene(gravity=(0, 0, -self.options["g"]))
+        self.ends: dict[str, list[tuple[str, float]]] = {name: [] for name in self.points}
+
+    def read(self) -> Scene:
+        """Return the scene, whose messages are the notes."""
+        density = self.options["rhow"]
+        if density > 0:
+            self.scene.fluid("sea", density=density, surface=0.0)
+        depth = max(self.options["wtrdpth"], *(-float(point.place[2]) for point in self.points.values()))
+        self.scene.surface("bed", Plane(point=(0, 0, -depth), normal=(0, 0, 1)))
+        for name, body in self.bodies.items():
+            if body.how == "free":
+                self._body(f"body_{name}", body)
+        for row in self.file.rows("lines"):
+            self._line(row)
+        for name, point in self.points.items():
+            self._point(f"point_{name}", point, self.ends[name])
+        self._leave_out()
+        self.scene.run_settings = {"duration": DURATION, "initial": "equilibrium"}
+        self.scene.messages += self.notes
+        return self.scene
+
+    def _options(self) -> dict[str, float]:
+        found = dict(DEFAULTS)
+        for row in self.file.rows("options"):
+            given = row.word(1, "the name of an option").lower()
+            name = SYNONYMS.get(given, given)
+            if name in DEFAULTS:
+                found[name] = row.number(0, row.words[1])
+            elif name in ENVIRONMENT and row.words[0] not in ("0", "0.0"):
+                self.notes.append(f"{row.where}: {ENVIRONMENT[name]} are left out: give the fluid a velocity")
+        return found
+
+    def _line(self, row: Row) -> None:
+        """Add a line as a cable with its drag and its contact with the bed."""
+        name, kind = f"line_{row.words[0]}", named(self.types, row.word(1, "LineType"), row, "line type")
+        if name in self.scene.cables:
+            raise row.refused(f"there is already a line {shown(row.words[0])} of lines", "give each its own ID")
+        ends = [self._end(row, k) for k in (2, 3)]
+        start, end = (self.points[each].place for each in ends)
+        length, segments = row.number(4, "UnstrLen"), row.number(5, "NumSegs")
+        if not length > 0 or not 1 <= segments <= 1e6 or segments % 1:
+            raise row.refused(f"UnstrLen must be positive and NumSegs a whole number, got {show(length)} m and "
+                              f"{show(segments)}")
+        with _at(row):
+            cable = self.scene.cable(
+                name, start=tuple(start.tolist()), end=tuple(end.tolist()), rest="straight", rest_length=length,
+                elements=int(segments), element="cable12", strain="engineering", section=kind.section(),
+                material=kind.material(length / segments))
+            self._drag(name, kind)
+            self._bed(name, kind)
+        for s, each in zip((0.0, cable.length), ends, strict=True):
+            self.ends[each].append((name, s))
+
+    def _end(self, row: Row, k: int) -> str:
+        """Return the point of an end of a line. Raises SceneError."""
+        word = row.word(k, "AttachA" if k == 2 else "AttachB")
+        name = word.upper().removeprefix("POINT").removeprefix("CON").removeprefix("P").removeprefix("C")
+        if name.startswith("R"):
+            raise row.refused(f"ends at rod {shown(word)}, and rods are not read", "give the end a point, and add a "
+                              "rigid body to the scene written")
+        named(self.points, name, row, "point")
+        return name
+
+    def _drag(self, name: str, kind: LineType) -> None:
+        if self.options["rhow"] > 0 and kind.diameter > 0:
+            self.scene.drag(name, normal=kind.drag[0], tangential=kind.drag[1], diameter=kind.diameter,
+                            added_mass=kind.added[0], added_mass_tangential=kind.added[1], name=f"{name}_water")
+
+    def _bed(self, name: str, kind: LineType) -> None:
+        """Add contact with the bed, whose damping is MoorDyn's at the depth of the line at rest on it."""
+        weight = (kind.mass - self.options["rhow"] * math.pi / 4 * kind.diameter**2) * self.options["g"]
+        stiffness = self.options["kbot"] * kind.diameter
+        if not stiffness > 0 or not weight > 0:
+            return
+        self.scene.contact(name, "bed", stiffness=stiffness, radius=BED_RADIUS, name=f"{name}_on_bed",
+                           damping=self.options["cbot"] * kind.diameter / weight,
+                           friction=self.options["frictioncoefficient"] or None)
+
+    def _point(self, name: str, point: Point, ends: list[tuple[str, float]]) -> None:
+        """Hold the ends of lines at a point, or tie them to each other with its mass."""
+        if not ends:
+            self.notes.append(f"{point.row.where}: the point has no line and is left out")
+            return
+        with _at(point.row):
+            if point.body is not None:
+                place = tuple((point.place - self.bodies[point.body].place).tolist())
+                for k, end in enumerate(ends):
+                    self.scene.joint("spherical", end, (f"body_{point.body}", place), name=f"{name}_{k + 1}")
+            elif point.how != "free":
+                for cable, s in ends:
+                    self.scene.pin(cable, s=s)
+                if point.how == "moved":
+                    self.notes.append(f"{point.row.where}: the point is held where it is drawn; in the place of its "
+                                      "pin give a motion, as the program does that moves it")
+            else:
+                self._join(name, point, ends)
+            if point.how != "free" or point.body is not None:
+                if point.mass or point.volume or point.drag:
+                    self.notes.append(f"{point.row.where}: M, V and CdA of a point that is not free are left out")
+
+    def _join(self, name: str, point: Point, ends: list[tuple[str, float]]) -> None:
+        (cable, s), *others = ends
+        for k, (other, at) in enumerate(others, start=1):
+            self.scene.tie(cable, s=s, to=other, at=at, rotation="free", name=f"{name}_tie_{k}")
+        if any(point.force):
+            self.scene.force(cable, s=s, value=point.force, name=f"{name}_force")
+        if not point.mass and not point.volume and not point.drag:
+            return
+        self.scene.point_mass(cable, s=s, mass=point.mass, name=name)
+        if self.options["rhow"] > 0 and (point.volume or point.drag):
+            self.scene.drag(name, area=point.drag, volume=point.volume, name=f"{name}_water",
+                            added_mass=point.added if point.volume else None)
+
+    def _body(self, name: str, body: Body) -> None:
+        """Add a free body, with buoyancy and drag at its origin."""
+        row = body.row
+        mass, centre = row.number(8, "Mass"), row.numbers(9, "CG", 3) if "|" in row.word(9, "CG") else (
+            0.0, 0.0, row.number(9, "CG"))
+        inertia, volume = row.numbers(10, "I", 3), row.number(11, "Volume", 0.0)
+        drag, added = (row.numbers(k, what, 6 if row.words[k].count("|") == 5 else 3) if k < len(row.words) else (0.0,)
+                       for k, what in ((12, "CdA"), (13, "Ca")))
+        if len(set(drag[:3])) > 1 or len(set(added[:3])) > 1 or any(drag[3:]) or any(added[3:]):
+            self.notes.append(f"{row.where}: drag and added mass of the body take the mean of CdA and of Ca along its "
+                              "axes, and none of rotations")
+        CdA, Ca = float(np.mean(drag[:3])), float(np.mean(added[:3]))
+        with _at(row):
+            self.scene.rigid_body(name, mass=mass, inertia=inertia, centre=centre, position=tuple(body.place.tolist()))
+            if self.options["rhow"] > 0 and (volume or CdA):
+                self.scene.drag(name, area=CdA, volume=volume, name=f"{name}_water",
+                                added_mass=Ca if volume else None)
+
+    def _leave_out(self) -> None:
+        """Note the tables that are not read."""
+        for table in ("rod types", "rods", "failures", "control"):
+            if rows := self.file.rows(table):
+                self.notes.append(f"{rows[0].where}: {table} are left out")
+        if any(kind.diameter == 0 for kind in self.types.values()):
+            self.notes.append("lines of diameter 0 have no water and no bed")
+        if self.options["rhow"] > 0:
+            self.notes.append("the inertia of the water is that of its kinetic energy, of which Morison's form, that "
+                              "of MoorDyn, leaves out terms in the rotation of a line")
+
+
+class _at:  # noqa: N801  it reads as a word
+    """The context that puts the place of a line of the file before errors of parts."""
+
+    def __init__(self, row: Row):
+        self.row = row
+
+    def __enter__(self) -> None:
+        """Do nothing before the part is made."""
+
+    def __exit__(self, kind: Any, error: BaseException | None, trace: Any) -> None:
+        """Raise a SceneError with the place in front."""
+        if isinstance(error, SceneError):
+            raise error.inside(self.row.where) from None
+
+
+def read_moordyn(path: str | os.PathLike[str]) -> Scene:
+    """Return the scene of an input file of MoorDyn-2.
+
+    Lines become cables of the names line_1, line_2, ... with as many elements as they have segments, in water up to
+    z = 0 above an even bed; fixed and coupled points hold them by pins, free points are ties of line ends with a
+    `PointMass`; free bodies are rigid bodies, others hold the points on them. The run starts from rest. ``messages`` of
+    the scene say what it leaves out. Raises SceneError.
+    """
+    return _Reader(read_file(path)).read()

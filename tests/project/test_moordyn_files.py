@@ -1,0 +1,133 @@
+"""Input files of MoorDyn read as scenes: against MoorDyn's forces, what is left out, refusals, the command."""
+
+from pathlib import Path
+
+import funicular as fu
+import numpy as np
+import pytest
+from expectations import refused
+from funicular.cli.main import app
+from moordyn_files import CLUMP, LINE, MOORDYN, ours
+from typer.testing import CliRunner
+
+NUMBERS = {"title": "t", "n": 4, "depth": 100, "dt": 0.01, "still": 0}
+
+
+def written(folder: Path, text: str) -> Path:
+    file = folder / "lines.txt"
+    file.write_text(text, encoding="utf-8")
+    return file
+
+
+def of(folder: Path, *changes: tuple[str, str], text: str = CLUMP) -> fu.Scene:
+    """Return the scene of a file with changes of its text."""
+    text = text.format(**NUMBERS)
+    for old, new in changes:
+        assert old in text, old
+        text = text.replace(old, new)
+    return fu.read_moordyn(written(folder, text))
+
+
+@pytest.mark.parametrize("case", MOORDYN)
+def test_forces_at_rest_are_those_of_moordyn(case, tmp_path, validated):
+    bound = 2e-4 if case == "a line on a bed" else 1e-3  # the clump weight still swings in MoorDyn
+    validated("Fluid", case, "force on the fairlead, along and down", MOORDYN[case], ours(case, tmp_path), unit="N",
+              bound=bound, source="MoorDyn 2.7.2")
+
+
+def test_each_number_arrives(tmp_path):
+    scene = of(tmp_path)
+    chain, rope = scene.cables["line_1"], scene.cables["line_3"]
+    assert (chain.length, chain.elements, rope.length) == (170, 4, 55)
+    assert chain.section.area * chain.material.youngs_modulus == pytest.approx(5e8)
+    assert rope.section.second_moment_about_z * rope.material.youngs_modulus == pytest.approx(1000)
+    assert chain.section.area * chain.material.density == pytest.approx(150)
+    assert chain.material.damping_time == pytest.approx(0.8 * 170 / 4 * np.sqrt(150 / 5e8))
+    assert rope.material.damping_time == pytest.approx(1e5 / 1e7)
+    drag = scene.drags["line_1_water"]
+    assert (drag.normal, drag.tangential, drag.added_mass, drag.diameter) == (1.6, 0.1, 1.0, 0.1)
+    clump = scene.drags["point_3_water"]
+    assert (clump.on, clump.area, clump.volume, clump.added_mass) == ("point_3", 1.5, 0.8, 0.5)
+    assert scene.point_masses["point_3"].mass == 5000
+    assert len(scene.ties) == 2
+    assert {(pin.cable, pin.s) for pin in scene.pins} == {("line_1", 0), ("line_2", 0), ("line_3", 55)}
+    assert scene.contacts["line_1_on_bed"].stiffness == pytest.approx(3e5 * 0.1)
+    assert scene.fluids["sea"].density == 1025
+    assert scene.gravity == (0, 0, -9.81)
+
+
+def test_bodies_hold_points(tmp_path):
+    bodies = ("---------------------- POINTS", "--- BODIES ---\nID Attachment X0 Y0 Z0 r0 p0 y0 Mass CG I V CdA Ca\n"
+              "(#) ...\n1 Fixed 160 0 -10 0 0 90 0 0 0 0 0 0\n2 Free 120 0 -50 0 0 0 5000 0|0|-1 100|100|50 0.8 2 0.5\n"
+              "---------------------- POINTS")
+    scene = of(tmp_path, bodies, ("3 Free 120 0 -50 5000 0.8 1.5 0.5", "3 Body2 0 0 1 0 0 0 0"),
+               ("4 Coupled 160 0 -10", "4 Body1 2 0 0"))
+    assert scene.cables["line_3"].point(55) == pytest.approx((160, 2, -10)), "turned by 90 degrees about z"
+    assert len(scene.joints) == 3
+    assert scene.joints["point_3_1"].b.at == (0, 0, 1)
+    body = scene.bodies["body_2"]
+    assert (body.mass, body.centre, body.inertia[2][2]) == (5000, (0, 0, -1), 50)
+    assert scene.equilibrium()["body_2.position"][2] < -40
+
+
+def test_what_it_leaves_out_is_said(tmp_path):
+    scene = of(tmp_path, ("9.81 g", "9.81 g\n1 WaveKin"), ("2 Fixed 0 -100 -100 0", "2 Fixed 0 -100 -100 7"),
+               ("4 Coupled", "5 Free 0 0 0 0 0 0 0\n4 Coupled"), ("--------------------- need", "--- CONTROL ---\nChan "
+                "Line\n() ()\n1 1\n--------------------- need"))
+    said = "\n".join(scene.messages)
+    for part in ("waves are left out", "M, V and CdA of a point that is not free are left out", "the point has no line "
+                 "and is left out", "in the place of its pin give a motion", "control are left out", "Morison's form"):
+        assert part in said, said
+
+
+BAD = {
+    "5e8": ("5e8", "curve.txt", 6, "EA must be a number, got 'curve.txt'; files and tables of laws are not read: give "
+            "one number, and the law in the scene written"),
+    "mass": ("150 5e8", "0 5e8", 6, "Mass/m must be positive, got 0"),
+    "type": ("1 chain 1 3", "1 chian 1 3", 18, "there is no line type 'chian'; did you mean \"chain\"?"),
+    "point": ("1 chain 1 3", "1 chain 9 3", 18, "there is no point '9'; known: 1, 2, 3, 4"),
+    "rod": ("1 chain 1 3", "1 chain R1A 3", 18, "ends at rod 'R1A', and rods are not read; give the end a point, and "
+            "add a rigid body to the scene written"),
+    "held": ("4 Coupled", "4 Turbine1", 14, "the attachment 'Turbine1' is not read; known: Fixed, Coupled, Free, "
+             "Body#"),
+    "twice": ("2 Fixed", "1 Fixed", 12, "there is already a line '1' of points; give each its own ID"),
+    "short": ("3 4 55 4 -", "3 4", 20, "UnstrLen is missing, number 5 of the line"),
+    "length": ("3 4 55 4 -", "3 4 -55 4 -", 20, "UnstrLen must be positive and NumSegs a whole number, got -55 m and "
+               "4"),
+    "columns": ("ID LineType AttachA AttachB UnstrLen", "Line LineType UnstrLen", 16, "has the columns of MoorDyn-1; "
+                "give those of MoorDyn-2: ID LineType AttachA AttachB UnstrLen NumSegs Outputs"),
+    "heading": ("- OPTIONS -", "- OPTOINS -", 21, "the heading 'OPTOINS' is not known; known: LINE TYPES, ROD TYPES, "
+                "BODIES, RODS, POINTS, LINES, FAILURE, CONTROL, OPTIONS, OUTPUT"),
+    "depth": ("100 WtrDpth", "bed.txt WtrDpth", 28, "WtrDpth must be a number, got 'bed.txt'; files and tables of "
+              "laws are not read: give one number, and the law in the scene written"),
+    "nan": ("0 100 -100", "0 nan -100", 11, "Y must be a number, got 'nan'; files and tables of laws are not read: "
+            "give one number, and the law in the scene written"),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_refusals_name_the_line(case, tmp_path):
+    old, new, line, message = BAD[case]
+    with refused(f"{tmp_path / 'lines.txt'}, line {line}: {message}"):
+        of(tmp_path, (old, new))
+
+
+def test_other_files_are_refused(tmp_path):
+    with refused(f"{tmp_path / 'none.txt'}: cannot be read: No such file or directory"):
+        fu.read_moordyn(tmp_path / "none.txt")
+    with refused(f"{tmp_path / 'lines.txt'}: has no line types; a table of them has the heading --- LINE TYPES ---"):
+        fu.read_moordyn(written(tmp_path, "nothing\n"))
+    with pytest.raises(fu.SceneError, match=r"lines.txt, line 18: cable \"line_1\": start and end must be different"):
+        of(tmp_path, ("1 chain 1 3", "1 chain 1 1"))
+
+
+def test_the_command_writes_a_scene(tmp_path):
+    file = written(tmp_path, LINE.format(**NUMBERS | {"depth": 200}))
+    result = CliRunner().invoke(app, ["import", "moordyn", str(file)])
+    assert result.exit_code == 0, result.output
+    scene = fu.load_scene(tmp_path / "lines.toml")
+    assert scene.to_toml() == fu.read_moordyn(file).to_toml()
+    assert "note: " in result.output and "written: " in result.output
+    run = scene.run(duration=0.1)
+    assert np.ptp(run["line_1.position"], axis=0).max() < 1e-3, "it begins at rest"
+    assert CliRunner().invoke(app, ["import", "orcaflex", str(file)]).exit_code == 2
