@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -60,9 +61,29 @@ def uplift(run: Run) -> np.ndarray:
     return np.asarray(positions[:, at, 1] - np.interp(places, x, y))
 
 
+def contacts(run: Run, pantograph: str = "pantograph") -> list[str]:
+    """Return the names of a pantograph's contacts, one of each strip with each contact wire. Raises SceneError."""
+    wires, strips = run.scene.cables, r"(_[0-9]+)?"
+    found = [name for name, each in run.scene.crossings.items()
+             if each.a in wires and re.fullmatch(re.escape(f"{pantograph}_{each.a}") + strips, name)]
+    if not found:
+        known = {re.sub(f"_{each.a}{strips}$", "", name) for name, each in run.scene.crossings.items()}
+        raise SceneError("assessment", f'there is no pantograph "{pantograph}"', near(pantograph, sorted(known)))
+    return found
+
+
 def losses(run: Run, pantograph: str = "pantograph") -> list[tuple[float, float]]:
-    """Return the intervals (s) in which the collector was off the wire."""
-    contact, found, since = f"{pantograph}_contact", [], None
+    """Return the intervals (s) in which none of a collector's strips was on a wire."""
+    apart = [(float(run.time[0]), float(run.time[-1]))]
+    for contact in contacts(run, pantograph):
+        off = _off(run, contact)
+        apart = [(max(a, begin), min(b, end)) for a, b in apart for begin, end in off if max(a, begin) < min(b, end)]
+    return apart
+
+
+def _off(run: Run, contact: str) -> list[tuple[float, float]]:
+    """Return the intervals (s) in which a contact was open."""
+    found, since = [], None
     if run[f"{contact}.normal_force"][0] <= 0:
         since = float(run.time[0])
     for event in run.events:
@@ -78,7 +99,9 @@ def losses(run: Run, pantograph: str = "pantograph") -> list[tuple[float, float]
 
 def assess(run: Run, sections: Sequence[tuple[float, float]] | None = None, pantograph: str = "pantograph",
            cutoff: float = CUTOFF, order: int = ORDER) -> xr.Dataset:
-    """Return the statistics of a run's contact force in sections of the track, as an xarray dataset.
+    """Return the statistics of a pantograph's contact force in sections of the track, as an xarray dataset.
+
+    The force is the sum of those of all strips and wires, which are in forces by contact and time.
 
     sections: their ends, in m along the track; by default the two spans in the middle, or the whole passage of a line
     of fewer than four spans. By section, of the force filtered at the cut-off (Hz): its mean, standard_deviation,
@@ -88,11 +111,9 @@ def assess(run: Run, sections: Sequence[tuple[float, float]] | None = None, pant
     """
     import xarray as xr  # brings pandas
 
-    name, time = f"{pantograph}_contact.normal_force", run.time
-    if name not in run:
-        known = [each.removesuffix("_contact") for each in run.scene.crossings]
-        raise SceneError("assessment", f'there is no pantograph "{pantograph}"', near(pantograph, known))
-    force, place = run[name], run[f"{pantograph}_1.position"][:, 0]
+    names, time = contacts(run, pantograph), run.time
+    forces = np.stack([run[f"{name}.normal_force"] for name in names])
+    force, place = forces.sum(axis=0), run[f"{pantograph}_1.position"][:, 0]
     steps = np.diff(time)
     whole = len(time) - 1 if abs(steps[-1] - steps[0]) > 1e-6 * steps[0] else len(time)  # the last may be shorter
     filtered = np.append(low_pass(force[:whole], float(steps[0]), cutoff, order), force[whole:])
@@ -100,8 +121,9 @@ def assess(run: Run, sections: Sequence[tuple[float, float]] | None = None, pant
             for section in _sections(run, sections, place)]
     by_section = {key: ("section", np.array([row[key] for row in rows])) for key in rows[0]}
     found = xr.Dataset({**by_section, "uplift": ("mast", uplift(run).max(axis=0)), "force": ("time", force),
-                        "filtered_force": ("time", filtered), "place": ("time", place)},
-                       coords={"time": time, "mast": masts(run)},
+                        "forces": (("contact", "time"), forces), "filtered_force": ("time", filtered),
+                        "place": ("time", place)},
+                       coords={"time": time, "mast": masts(run), "contact": names},
                        attrs={"cutoff_Hz": cutoff, "filter": f"Butterworth, order {order}, forwards and backwards"})
     for key, unit in UNITS.items():
         found[key].attrs["units"] = unit
@@ -110,7 +132,7 @@ def assess(run: Run, sections: Sequence[tuple[float, float]] | None = None, pant
 
 UNITS = {"mean": "N", "standard_deviation": "N", "statistical_maximum": "N", "statistical_minimum": "N", "maximum": "N",
          "minimum": "N", "loss_time": "s", "loss_share": "1", "losses": "1", "start": "m", "end": "m", "uplift": "m",
-         "force": "N", "filtered_force": "N", "place": "m", "mast": "m", "time": "s"}
+         "force": "N", "forces": "N", "filtered_force": "N", "place": "m", "mast": "m", "time": "s"}
 
 
 def _sections(run: Run, sections: Sequence[tuple[float, float]] | None, place: np.ndarray) -> list[tuple[float, float]]:

@@ -19,6 +19,7 @@ from ..errors import SceneError
 from ..parts.part import Part
 from ..parts.schemas import checked, list_schema, some
 from ..parts.validation import not_negative, positive, show, shown, vector
+from .head import Head
 from .pantograph import Pantograph
 
 POINTS = "knee", "rod_base", "rod_top", "head", "guide_low", "guide_top"
@@ -66,9 +67,9 @@ class JointedPantograph(Part):
     N/m and suspension_damping in N s/m. damper in N s/m, between damper_at, points of the base and of the lower arm.
 
     uplift in N: the force at rest on a wire at the height drawn; or moment in N m, which raises the lower arm and makes
-    it. aerodynamic in N s²/m²: times the square of the speed, on the carrier. contact_stiffness as of `Pantograph`.
-    Points, masses and damping that are not given are chosen, and of no type that is built: 15 kg move with the head,
-    and the static force changes by 3 % within 0.15 m up or down.
+    it. aerodynamic in N s²/m²: times the square of the speed, on the carrier. contact_stiffness and tilting_head as of
+    `Pantograph`. Points, masses and damping that are not given are chosen, and of no type that is built: 15 kg move
+    with the head, and the static force changes by 3 % within 0.15 m up or down.
     """
 
     knee: AnyPoint = (1.2, 0.85)
@@ -90,6 +91,7 @@ class JointedPantograph(Part):
     moment: Annotated[float, not_negative("N m")] | None = None
     aerodynamic: Annotated[float, not_negative("N s²/m²")] = 0.0
     contact_stiffness: Annotated[float, positive("N/m")] = 50e3
+    tilting_head: Head | None = None
 
     @model_validator(mode="after")
     def _lifts(self) -> JointedPantograph:
@@ -216,7 +218,7 @@ class JointedPantograph(Part):
         return Pantograph(masses=[self.collector.mass, mass], stiffness=[self.suspension_stiffness, stiffness],
                           damping=[self.suspension_damping, self.damper * ratio**2],
                           uplift=pressed, aerodynamic=self.aerodynamic,
-                          contact_stiffness=self.contact_stiffness)
+                          contact_stiffness=self.contact_stiffness, tilting_head=self.tilting_head)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from pydantic import model_validator
 
 from ..parts.part import Part
 from ..parts.validation import list_of, not_negative, positive
+from .head import Head
 
 
 class Pantograph(Part):
@@ -17,7 +18,8 @@ class Pantograph(Part):
     on the base. They are free of force where the collector is at the contact wire's height at its outer droppers; each
     mass has a force against its weight. uplift in N: the static force on the lowest mass; aerodynamic in N s²/m²: times
     the square of the speed, added to it. contact_stiffness in N/m, between wire and collector; the contact of the scene
-    has it in series with the dent in the wire that elements leave out, see `local_sag`.
+    has it in series with the dent in the wire that elements leave out, see `local_sag`. tilting_head: a `Head`
+    on the first mass, with the contact strips.
     """
 
     masses: Annotated[tuple[float, ...], list_of("kg", least=1)]
@@ -26,6 +28,7 @@ class Pantograph(Part):
     uplift: Annotated[float, not_negative("N")]
     aerodynamic: Annotated[float, not_negative("N s²/m²")] = 0.0
     contact_stiffness: Annotated[float, positive("N/m")] = 50e3
+    tilting_head: Head | None = None
 
     @model_validator(mode="after")
     def _is_a_chain(self) -> Pantograph:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,9 @@ from ..errors import SceneError
 from ..parts.cable import Cable
 from ..parts.settings import overridden
 from ..parts.solids import Box, Cylinder
+from ..parts.validation import Vector
 from ..scene.scene import Scene
+from .head import RADIUS, REACH, add_head
 from .jointed import JointedPantograph
 from .local_sag import mean_missing_compliance
 from .pantograph import Pantograph
@@ -33,10 +36,7 @@ END_DISTANCE = 20.0
 SAMPLED_NODES = 80
 """Nodes of the contact wire, from its start, for the mean compliance that its elements lack."""
 
-RADIUS = 0.05
-"""m: from the wire's axis to the middle of the collector in contact; more than any penetration."""
-
-COLLECTOR = (0.3, 2 * RADIUS, 1.6)
+COLLECTOR = (0.3, 2 * RADIUS, 2 * REACH)
 """m: size of the collector as drawn, along the track, up, across."""
 
 BASE_MASS, TURNING_INERTIA = 1.0, 1.0
@@ -61,9 +61,10 @@ def add_pantograph(scene: Scene, pantograph: Pantograph | JointedPantograph, at:
     """Add a pantograph below the contact wire at x = `at` (m), which moves along x at a speed (m/s).
 
     Its collector is name_1, its base name_base; the masses of a chain below the collector are name_2 and so on, the
-    bodies of a jointed one name_lower, name_upper, name_rod and name_carrier. Its contact is name_contact. The scene's
-    runs have the settings `RUN` by default, and end before the first pantograph is at the end of the line. Raises
-    SceneError.
+    bodies of a jointed one name_lower, name_upper, name_rod and name_carrier; a head that tilts is name_tilting_head,
+    its strips are name_strip_1 and so on. Its contact is name_contact, of several strips name_contact_1 and so on. The
+    scene's runs have the settings `RUN` by default, and end before the first pantograph is at the end of the line.
+    Raises SceneError.
     """
     wire = scene.cables.get("contact")
     if wire is None:
@@ -79,15 +80,26 @@ def add_pantograph(scene: Scene, pantograph: Pantograph | JointedPantograph, at:
     settings["duration"] = min(duration, settings.get("duration", duration))
     if "absolute_tol" in settings and not has_tolerance:
         settings["absolute_tol"] = min(settings["absolute_tol"], MAX_ERROR_RATE * settings["duration"])
-    stiffness = 1 / (1 / pantograph.contact_stiffness + _missing(wire))
     height = float(np.interp(at, x, y)) - RADIUS
+    strips = [(f"{name}_1", (0.0, 0.0, 0.0))]
     if isinstance(pantograph, JointedPantograph):
-        _add_jointed(scene, pantograph, (at, height + INITIAL_PENETRATION), speed, name)
+        height += INITIAL_PENETRATION
+        _add_jointed(scene, pantograph, (at, height), speed, name)
     else:
         _add_masses(scene, pantograph, at, height, speed, name)
-    bar: dict[str, Any] = {} if wire.dim == 2 else {"axis": (0, 0, 1), "length": COLLECTOR[2] / 2}
-    scene.crossing("contact", f"{name}_1", radius=RADIUS, side=(0, 1, 0), name=f"{name}_contact", stiffness=stiffness,
-                   **bar)
+    if pantograph.tilting_head is not None:
+        strips = add_head(scene, pantograph.tilting_head, name, (at, height), speed, wire.dim == 2)
+    _add_contacts(scene, wire, strips, pantograph.contact_stiffness, name)
+
+
+def _add_contacts(scene: Scene, wire: Cable, strips: Sequence[tuple[str, Vector]], stiffness: float, name: str) -> None:
+    """Add the contacts of a wire with the strips of a pantograph, each a body and the middle of the strip on it."""
+    bar: dict[str, Any] = {} if wire.dim == 2 else {"axis": (0, 0, 1), "length": REACH}
+    for k, (body, middle) in enumerate(strips):
+        placed = bar | ({"at": middle} if any(middle) else {})
+        numbered = f"_{k + 1}" * (len(strips) > 1)
+        scene.crossing(wire.name, body, radius=RADIUS, side=(0, 1, 0), name=f"{name}_{wire.name}{numbered}",
+                       stiffness=1 / (1 / stiffness + _missing(wire)), **placed)
 
 
 def _missing(wire: Cable) -> float:

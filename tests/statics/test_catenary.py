@@ -224,7 +224,7 @@ def passage():
 
 def test_a_passage_is_assessed(passage):
     found = catenary.assess(passage)
-    assert found.sizes == {"section": 1, "mast": 3, "time": 250}
+    assert found.sizes == {"section": 1, "mast": 3, "contact": 1, "time": 250}
     filtered = found.filtered_force.values
     assert float(found["mean"][0]) == pytest.approx(filtered.mean(), rel=1e-9)
     assert float(found.statistical_minimum[0]) == pytest.approx(filtered.mean() - 3 * filtered.std(), rel=1e-9)
