@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import SceneError, near
+from .building import named
 
 if TYPE_CHECKING:
     import xarray as xr  # brings pandas
@@ -21,6 +22,9 @@ CUTOFF = 20.0
 
 ORDER = 4
 """Order of the filter in each of its two directions."""
+
+MAST_DISTANCE = 1e-3
+"""m: least distance of two masts along the track."""
 
 MIN_SAMPLES = 5.0
 """Output times in a period of the cut-off frequency: with fewer the filtered force differs."""
@@ -45,20 +49,28 @@ def low_pass(force: np.ndarray, step: float, cutoff: float = CUTOFF, order: int 
 
 def masts(run: Run) -> np.ndarray:
     """Return the places of the masts of a run's catenary, in m along the track."""
-    ends = [cable.drawn_through for name, cable in run.scene.cables.items() if name.startswith("messenger_")]
-    if not ends or "contact" not in run.scene.cables:
+    cables = run.scene.cables
+    ends = np.sort([point[0] for name in named(cables, "messenger_[0-9]+") for point in (
+        cables[name].drawn_through[0], cables[name].drawn_through[-1])])
+    if not len(ends) or not named(cables, "contact"):
         raise SceneError("run", "is of no catenary: there are no cables \"contact\" and \"messenger_1\"",
                          "make the scene with funicular.catenary.scene")
-    return np.array([ends[0][0][0], *(points[-1][0] for points in ends)])
+    return np.asarray(ends[np.append(True, np.diff(ends) > MAST_DISTANCE)])
 
 
 def uplift(run: Run) -> np.ndarray:
-    """Return (time, mast): the rise of the contact wire over its height at rest at each mast, in m."""
+    """Return (time, mast): the rise of the contact wire over its height at rest at each mast, in m.
+
+    Where two sections overlap, it is the largest of both wires.
+    """
     places = masts(run)
-    wire, positions = run.scene.cables["contact"], run["contact.position"]
-    at = [int(np.argmin(np.abs(positions[0, :, 0] - x))) for x in places]
-    x, y, _ = zip(*wire.drawn_through, strict=True)
-    return np.asarray(positions[:, at, 1] - np.interp(places, x, y))
+    found = np.full((len(run.time), len(places)), -np.inf)
+    for name in named(run.scene.cables, "contact"):
+        (x, y, _), positions = np.transpose(run.scene.cables[name].drawn_through), run[f"{name}.position"]
+        over = np.flatnonzero((places >= x[0] - MAST_DISTANCE) & (places <= x[-1] + MAST_DISTANCE))
+        at = [int(np.argmin(np.abs(positions[0, :, 0] - place))) for place in places[over]]
+        found[:, over] = np.maximum(found[:, over], positions[:, at, 1] - np.interp(places[over], x, y))
+    return found
 
 
 def contacts(run: Run, pantograph: str = "pantograph") -> list[str]:
@@ -192,8 +204,8 @@ def plot_uplift(run: Run, axes: Axes, at: Sequence[int] | None = None) -> None:
 
 def plot_droppers(run: Run, axes: Axes, span: int, droppers: Sequence[int] | None = None) -> None:
     """Draw the forces of a span's droppers over time; span and droppers are numbered from 1, by default all."""
-    every = [name for name in run.scene.point_forces if name.startswith(f"dropper_{span}_")]
-    names = every if droppers is None else [f"dropper_{span}_{k}" for k in droppers]
+    chosen = "[0-9]+" if droppers is None else f"({'|'.join(map(str, droppers))})"
+    names = named(run.scene.point_forces, f"dropper_{span}_{chosen}")
     for name in names:
         axes.plot(run.time, run[f"{name}.tension"], linewidth=1, label=f"dropper {name.rpartition('_')[2]}")
     axes.set(xlabel="time in s", ylabel="force in N", title=f"droppers of span {span}")

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -19,6 +20,32 @@ DRAWN_SEGMENTS = 16
 """Straight segments of a span of a wire that is not straight, as drawn."""
 
 Point = tuple[float, float, float]
+
+NAMES = r"(section_[0-9]+_)?{}"
+"""Pattern of names of parts of the first section of a catenary and of others."""
+
+
+@dataclass(frozen=True)
+class Section:
+    """A line as one section of a catenary: counted from 1, its first mast at a place in m along the track."""
+
+    line: Line
+    number: int = 1
+    start: float = 0.0
+
+    def called(self, name: str) -> str:
+        """Return the name of a part."""
+        return name if self.number == 1 else f"section_{self.number}_{name}"
+
+    @property
+    def masts(self) -> list[float]:
+        """Return the places of the masts, in m along the track."""
+        return [self.start + mast for mast in self.line.masts]
+
+
+def named(names: Iterable[str], name: str) -> list[str]:
+    """Return which of these are names of the parts called so, a regular expression, in any section."""
+    return [each for each in names if re.fullmatch(NAMES.format(name), each)]
 
 
 @dataclass(frozen=True)
@@ -83,60 +110,65 @@ def _drawn(masts: Sequence[Point]) -> list[Point]:
     return list(zip(x.tolist(), y.tolist(), z.tolist(), strict=True))
 
 
-def add_spans(scene: Scene, line: Line, spans: Sequence[SpanForm], contact_length: float, heights: Sequence[float],
-              longest: tuple[float, float], stretches: tuple[float, float] = (1.0, 1.0)) -> None:
+def add_spans(scene: Scene, section: Section, spans: Sequence[SpanForm], contact_length: float,
+              heights: Sequence[float], longest: tuple[float, float], planar: bool,
+              stretches: tuple[float, float] = (1.0, 1.0)) -> None:
     """Add wires and droppers of spans from the first mast on.
 
     contact_length: in the first span; heights: of the contact wire at the masts; longest: elements, see `form`; all in
-    m. stretches: of contact wire and messenger, by which their given lengths are over the undeformed ones.
+    m. planar: if the scene is. stretches: of contact wire and messenger, by which their given lengths are over the
+    undeformed ones.
     """
-    of_contact, of_messenger = line.sides
+    line, (of_contact, of_messenger) = section.line, section.line.sides
     nodes = [along_contact(line, contact_length, k, mesh(each.span, longest[0])) for k, each in enumerate(spans)]
-    add_wire(scene, "contact", line.contact, list(zip(line.masts, heights, of_contact, strict=False)),
-             np.concatenate([*(each[:-1] for each in nodes), nodes[-1][-1:]]) / stretches[0], line.planar)
-    upper = [(x, line.height, z) for x, z in zip(line.masts, of_messenger, strict=True)]
+    lower = list(zip(section.masts, heights, of_contact, strict=False))
+    add_wire(scene, section.called("contact"), line.contact, lower,
+             np.concatenate([*(each[:-1] for each in nodes), nodes[-1][-1:]]) / stretches[0], planar)
+    upper = [(x, line.height, z) for x, z in zip(section.masts, of_messenger, strict=True)]
     for k, each in enumerate(spans):
-        add_wire(scene, f"messenger_{k + 1}", line.messenger, upper[k:k + 2],
-                 mesh(each.span, longest[1]) * each.messenger_length / stretches[1], line.planar)
+        add_wire(scene, section.called(f"messenger_{k + 1}"), line.messenger, upper[k:k + 2],
+                 mesh(each.span, longest[1]) * each.messenger_length / stretches[1], planar)
     for k, each in enumerate(spans):
         places = (each.span.fractions * (each.messenger_length / stretches[1]),
                   along_contact(line, contact_length / stretches[0], k, each.span.fractions))
-        _add_droppers(scene, k, each, *(each.tolist() for each in places))
+        _add_droppers(scene, section, k, each, *(each.tolist() for each in places))
 
 
-def tie_messengers(scene: Scene, spans: int) -> None:
+def tie_messengers(scene: Scene, section: Section, spans: int) -> None:
     """Tie the messengers of all spans together at the masts between, where they turn freely."""
     for k in range(1, spans):
-        before = scene.cables[f"messenger_{k}"]
-        scene.tie(before, s=before.length, to=f"messenger_{k + 1}", at=0.0, rotation="free")
+        before = scene.cables[section.called(f"messenger_{k}")]
+        scene.tie(before, s=before.length, to=section.called(f"messenger_{k + 1}"), at=0.0, rotation="free")
 
 
-def hold_ends(scene: Scene, line: Line, spans: int, ends: Sequence[End]) -> None:
+def hold_ends(scene: Scene, section: Section, spans: int, ends: Sequence[End]) -> None:
     """Hold the outer ends of both wires, or let weights pull them: messengers turn freely there.
 
     ends: at the first and at the last of the masts of all spans.
     """
-    last = f"messenger_{spans}"
-    for name, s, end, along in (("messenger_1", 0.0, ends[0], -1.0), (last, scene.cables[last].length, ends[1], 1.0)):
+    contact, first, last = map(section.called, ("contact", "messenger_1", f"messenger_{spans}"))
+    line = section.line
+    for name, s, end, along in ((first, 0.0, ends[0], -1.0), (last, scene.cables[last].length, ends[1], 1.0)):
         if end.weights:
             scene.motion(name, s=s, displacement=("free", 0, 0))
             scene.force(name, s=s, value=(along * line.messenger.tension, 0, 0))
         else:
             scene.pin(name, s=s)
-    for s, end, along in ((0.0, ends[0], -1.0), (scene.cables["contact"].length, ends[1], 1.0)):
+    for s, end, along in ((0.0, ends[0], -1.0), (scene.cables[contact].length, ends[1], 1.0)):
         level: dict[str, Any] = {"rotation": ((0, 0, 1), 0)} if end.height is None else {}
-        scene.motion("contact", s=s, displacement=("free" if end.weights else 0, "free" if level else 0, 0), **level)
+        scene.motion(contact, s=s, displacement=("free" if end.weights else 0, "free" if level else 0, 0), **level)
         if end.weights:
-            scene.force("contact", s=s, value=(along * line.contact.tension, 0, 0))
+            scene.force(contact, s=s, value=(along * line.contact.tension, 0, 0))
 
 
-def _add_droppers(scene: Scene, k: int, formed: SpanForm, on_messenger: list[float], on_contact: list[float]) -> None:
+def _add_droppers(scene: Scene, section: Section, k: int, formed: SpanForm, on_messenger: list[float],
+                  on_contact: list[float]) -> None:
     """Add the droppers of a span, counted from 0, at places on both wires, in m, and the masses at their ends."""
-    droppers = formed.span.droppers
+    wires = section.called(f"messenger_{k + 1}"), section.called("contact")
     for j, s in enumerate(zip(on_messenger, on_contact, strict=True)):
-        upper, lower = zip((f"messenger_{k + 1}", "contact"), s, strict=True)
-        scene.spring(upper, lower, name=f"dropper_{k + 1}_{j + 1}", stiffness=float(formed.stiffnesses[j]),
-                     length=float(formed.lengths[j]), tension_only=True)
-        for (wire, place), mass in ((upper, float(formed.hanging[j])), (lower, droppers.contact_clamp)):
+        upper, lower = zip(wires, s, strict=True)
+        scene.spring(upper, lower, name=section.called(f"dropper_{k + 1}_{j + 1}"), tension_only=True,
+                     stiffness=float(formed.stiffnesses[j]), length=float(formed.lengths[j]))
+        for (wire, place), mass in ((upper, float(formed.hanging[j])), (lower, formed.span.droppers.contact_clamp)):
             if mass:
                 scene.force(wire, s=place, value=(0, scene.gravity[1] * mass, 0))

@@ -12,9 +12,10 @@ from ..errors import SceneError, near
 from ..parts.signal import Ramp, Signal
 from ..parts.spring import Spring
 from ..scene.scene import Scene
-from .building import SpanForm, add_spans, along_contact, hold_ends, mesh, tie_messengers
+from .building import Section, SpanForm, add_spans, along_contact, hold_ends, mesh, named, tie_messengers
 from .line import Line, by_span
 from .local_sag import missing_compliance
+from .overlap import in_sections
 
 if TYPE_CHECKING:
     from ..results.equilibrium import Equilibrium
@@ -67,15 +68,16 @@ def form(line: Line, longest: tuple[float, float] = ELEMENT_LENGTHS) -> Form:
     guess, contact_length = _guess(line, longest)
     scene = Scene(gravity=(0, -line.gravity, 0))
     heights = [line.ends[0].height or 0.0, *[0.0] * (len(guess) - 1), line.ends[1].height or 0.0]
-    add_spans(scene, line, guess, contact_length, heights, longest, (line.contact.stretch, line.messenger.stretch))
+    section, stretches = Section(line), (line.contact.stretch, line.messenger.stretch)
+    add_spans(scene, section, guess, contact_length, heights, longest, line.planar, stretches)
     contact_length /= line.contact.stretch
-    tie_messengers(scene, len(guess))
+    tie_messengers(scene, section, len(guess))
     for mast in range(1, len(guess)):  # as its support holds the messenger, and its steady arm the contact wire
         before = scene.cables[f"messenger_{mast}"]
         scene.motion(before, s=before.length, displacement=("free", 0, 0))
         if not line.planar:
             scene.motion("contact", s=along_contact(line, contact_length, mast), displacement=("free", "free", 0))
-    hold_ends(scene, line, len(guess), [end.remade({"weights": False}) for end in line.ends])
+    hold_ends(scene, section, len(guess), [end.remade({"weights": False}) for end in line.ends])
     adjust, to = _targets(scene, line, guess, contact_length)
     return _read(line, longest, guess, scene.equilibrium(adjust=adjust, to=to))
 
@@ -162,22 +164,29 @@ def _read_span(line: Line, k: int, longest: tuple[float, float], guess: SpanForm
                     1 / (1 / own + missing))
 
 
-def scene(line: Line | Form, longest: tuple[float, float] = ELEMENT_LENGTHS, *,
-          temperature: float | Signal | None = None, broken: Mapping[str, float] | None = None) -> Scene:
+def scene(lines: Line | Form | Sequence[Line | Form], longest: tuple[float, float] = ELEMENT_LENGTHS, *,
+          overlaps: int | Sequence[int] = 1, temperature: float | Signal | None = None,
+          broken: Mapping[str, float] | None = None) -> Scene:
     """Return the scene of a formed catenary, x along the track, y up from the contact wire at the outer droppers.
 
-    line: or its form, where it is known; longest: as in `form`. The contact wire is "contact", the messenger
-    "messenger_1" from the first mast to the second, the droppers "dropper_1_1" and so on, supports and steady arms
-    "support_1" and "arm_0" by their masts. temperature: of the wires above that of the form, in K, a number or signal.
+    lines: a line or its form, where it is known; or several, the sections of the catenary, each of which has its last
+    spans beside the first ones of the next; overlaps: the number of these spans, or one for each pair of sections.
+    longest: as in `form`. The contact wire is "contact", the messenger "messenger_1" from the first mast to the second,
+    the droppers "dropper_1_1" and so on, supports and steady arms "support_1" and "arm_0" by their masts; in the second
+    section "section_2_contact" and so on. temperature: of the wires above that of the form, in K, a number or signal.
     broken: droppers by name with the time at which each breaks, in s, 0 for one that is missing from the start; their
     masses stay. Raises SceneError, EquilibriumError.
     """
-    formed = form(line, longest) if isinstance(line, Line) else line
-    made = Scene(gravity=(0, -formed.line.gravity, 0), temperature=temperature)
-    add_spans(made, formed.line, formed.spans, formed.contact_length, formed.heights, formed.longest)
-    tie_messengers(made, formed.line.spans)
-    hold_ends(made, formed.line, formed.line.spans, formed.line.ends)
-    _add_masts(made, formed)
+    given = [lines] if isinstance(lines, Line | Form) else [*lines]
+    formed = [form(each, longest) if isinstance(each, Line) else each for each in given]
+    sections = in_sections([each.line for each in formed], overlaps)
+    made = Scene(gravity=(0, -sections[0].line.gravity, 0), temperature=temperature)
+    planar = all(section.line.planar for section in sections)
+    for section, each in zip(sections, formed, strict=True):
+        add_spans(made, section, each.spans, each.contact_length, each.heights, each.longest, planar)
+        tie_messengers(made, section, section.line.spans)
+        hold_ends(made, section, section.line.spans, section.line.ends)
+        _add_masts(made, section, each, planar)
     for name, time in (broken or {}).items():
         made = _broken(made, name, time)
     return made
@@ -185,7 +194,7 @@ def scene(line: Line | Form, longest: tuple[float, float] = ELEMENT_LENGTHS, *,
 
 def _broken(made: Scene, name: str, time: float) -> Scene:
     """Return a scene whose dropper breaks at a time in s, or is missing if that is 0."""
-    droppers = [each for each in made.point_forces if each.startswith("dropper_")]
+    droppers = named(made.point_forces, "dropper_[0-9]+_[0-9]+")
     if name not in droppers:
         raise SceneError("catenary", f'there is no dropper "{name}" to break', near(name, droppers))
     if not 0 <= time < np.inf:
@@ -198,22 +207,21 @@ def _broken(made: Scene, name: str, time: float) -> Scene:
     return made.replace(name, stiffness=Ramp(start=time, end=time + BREAKING_TIME, before=dropper.stiffness, after=0.0))
 
 
-def _add_masts(made: Scene, formed: Form) -> None:
-    line, arm = formed.line, formed.line.steady_arm
+def _add_masts(made: Scene, section: Section, formed: Form, planar: bool) -> None:
+    line, arm, called = section.line, section.line.steady_arm, section.called
     of_contact, of_messenger = line.sides
+    places = [(called("contact"), along_contact(line, formed.contact_length, mast)) for mast in range(line.spans + 1)]
     for mast in range(1, line.spans):
-        x, z = line.masts[mast], of_messenger[mast]
-        before = made.cables[f"messenger_{mast}"]
-        made.spring((x, line.height + ARM_LENGTH, z), (before, before.length), name=f"support_{mast}",
+        x, z = section.masts[mast], of_messenger[mast]
+        before = made.cables[called(f"messenger_{mast}")]
+        made.spring((x, line.height + ARM_LENGTH, z), (before, before.length), name=called(f"support_{mast}"),
                     stiffness=line.support, length=ARM_LENGTH - formed.mast_forces[mast - 1] / line.support)
-        if not line.planar:
+        if not planar:
             made.motion(before, s=before.length, displacement=("free", "free", 0))
             side = of_contact[mast]  # a rod holds the contact wire on this side of the track, and pulls it there
             hinge = x, formed.heights[mast], side + float(np.copysign(arm.length, side))
-            made.joint("distance", hinge, ("contact", along_contact(line, formed.contact_length, mast)),
-                       length=arm.length, name=f"steady_arm_{mast}")
-    for mast in range(line.spans + 1):
+            made.joint("distance", hinge, places[mast], length=arm.length, name=called(f"steady_arm_{mast}"))
+    for mast, place in enumerate(places):
         if arm.stiffness:
-            made.spring((line.masts[mast], formed.heights[mast] + ARM_LENGTH, of_contact[mast]),
-                        ("contact", along_contact(line, formed.contact_length, mast)), name=f"arm_{mast}",
-                        stiffness=arm.stiffness, length=ARM_LENGTH)
+            made.spring((section.masts[mast], formed.heights[mast] + ARM_LENGTH, of_contact[mast]), place,
+                        name=called(f"arm_{mast}"), stiffness=arm.stiffness, length=ARM_LENGTH)

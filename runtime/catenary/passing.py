@@ -13,6 +13,7 @@ from ..parts.settings import overridden
 from ..parts.solids import Box, Cylinder
 from ..parts.validation import Vector
 from ..scene.scene import Scene
+from .building import named
 from .head import RADIUS, REACH, add_head
 from .jointed import JointedPantograph
 from .local_sag import mean_missing_compliance
@@ -62,25 +63,27 @@ def add_pantograph(scene: Scene, pantograph: Pantograph | JointedPantograph, at:
 
     Its collector is name_1, its base name_base; the masses of a chain below the collector are name_2 and so on, the
     bodies of a jointed one name_lower, name_upper, name_rod and name_carrier; a head that tilts is name_tilting_head,
-    its strips are name_strip_1 and so on. Its contact is name_contact, of several strips name_contact_1 and so on. The
-    scene's runs have the settings `RUN` by default, and end before the first pantograph is at the end of the line.
+    its strips are name_strip_1 and so on. Its contact is name_contact, of several strips name_contact_1 and so on; with
+    the contact wire of a second section name_section_2_contact. The scene's runs have the settings `RUN` by default,
+    and end before the first pantograph is at the end of the line.
     Raises SceneError.
     """
-    wire = scene.cables.get("contact")
-    if wire is None:
+    wires = [scene.cables[each] for each in named(scene.cables, "contact")]
+    if not wires:
         raise SceneError("pantograph", 'there is no cable "contact"', "make the scene with funicular.catenary.scene")
-    x, y, _ = zip(*wire.drawn_through, strict=True)
-    begin, end = x[0], x[-1]
+    drawn = [np.transpose(wire.drawn_through) for wire in wires]
+    begin, end = float(min(x[0] for x, *_ in drawn)), float(max(x[-1] for x, *_ in drawn))
     if not begin < at < end - END_DISTANCE or not 0 <= speed < np.inf:
         raise SceneError("pantograph", f"at {at:.6g} m with {speed:.6g} m/s does not move along the line",
                          f"begin between {begin:.6g} and {end - END_DISTANCE:.6g} m, with a speed that is not negative")
     has_tolerance = "absolute_tol" in scene.run_settings
-    scene.run_settings = settings = overridden(RUN, scene.run_settings)
+    heights = {"quantities": [f"{wire.name}.position.y" for wire in wires]}
+    scene.run_settings = settings = overridden(RUN | heights, scene.run_settings)
     duration = (end - END_DISTANCE - at) / speed if speed else 1.0
     settings["duration"] = min(duration, settings.get("duration", duration))
     if "absolute_tol" in settings and not has_tolerance:
         settings["absolute_tol"] = min(settings["absolute_tol"], MAX_ERROR_RATE * settings["duration"])
-    height = float(np.interp(at, x, y)) - RADIUS
+    height = min(float(np.interp(at, x, y)) for x, y, _ in drawn if x[0] <= at <= x[-1]) - RADIUS
     strips = [(f"{name}_1", (0.0, 0.0, 0.0))]
     if isinstance(pantograph, JointedPantograph):
         height += INITIAL_PENETRATION
@@ -88,8 +91,9 @@ def add_pantograph(scene: Scene, pantograph: Pantograph | JointedPantograph, at:
     else:
         _add_masses(scene, pantograph, at, height, speed, name)
     if pantograph.tilting_head is not None:
-        strips = add_head(scene, pantograph.tilting_head, name, (at, height), speed, wire.dim == 2)
-    _add_contacts(scene, wire, strips, pantograph.contact_stiffness, name)
+        strips = add_head(scene, pantograph.tilting_head, name, (at, height), speed, wires[0].dim == 2)
+    for wire in wires:
+        _add_contacts(scene, wire, strips, pantograph.contact_stiffness, name)
 
 
 def _add_contacts(scene: Scene, wire: Cable, strips: Sequence[tuple[str, Vector]], stiffness: float, name: str) -> None:
