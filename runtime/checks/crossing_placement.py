@@ -11,7 +11,7 @@ from ..parts.crossing_start import Start, radii, sign_of, start_of
 from ..parts.modal_body import ModalBody
 from ..parts.scene_data import OfDrawing, SceneData
 from ..parts.validation import LENGTH_TOLERANCE, show
-from .placement import placed_attachment, report
+from .placement import check_without_hinge, placed_attachment, report
 
 MIN_CROSSING_SINE = 1e-3
 """Sine of the angle between lines as drawn below which their closest points are not those of a crossing."""
@@ -25,6 +25,9 @@ def placed_crossing(scene: SceneData, part: Crossing) -> Crossing:
         _check_cables(scene, part)
     else:
         part = _placed_bar(scene, part)
+    for name in (part.a, part.b or ""):
+        if name in scene.cables:
+            check_without_hinge(part.where, scene.cables[name])
     try:
         radius = radii(scene, part)
     except ValueError as error:

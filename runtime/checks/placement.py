@@ -70,6 +70,14 @@ def node_at(scene: SceneData, name: str, place: str, s: float, keyword: str = "s
         f"nodes {'near it ' if cable.elements > 11 else ''}are at " + ", ".join(f"{s:.9g}" for s in nodes) + " m")
 
 
+def check_without_hinge(where: str, cable: Cable) -> None:
+    """Raise SceneError for what moves along a cable whose tangent may jump."""
+    if cable.hinges:
+        raise SceneError(where, f"moves along {cable.where}, whose tangent may jump at the hinge at "
+                         f"{show(cable.mesh.start(cable.hinges[0]), 'm')}",
+                         "leave the hinge out, or end a cable on each side and join them by a tie")
+
+
 def placed_support(scene: SceneData, support: Support) -> Support:
     """Return the support, checked to be on a free node."""
     node = node_at(scene, support.cable, support.where, support.s)

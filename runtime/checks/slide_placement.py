@@ -16,7 +16,7 @@ from ..parts.slide import Slide
 from ..parts.validation import LENGTH_TOLERANCE, show
 from .frames import cable_frame, has_section, rope_frame
 from .joint_placement import check_up
-from .placement import elements_with_sections, placed_attachment, report
+from .placement import check_without_hinge, elements_with_sections, placed_attachment, report
 from .slide_on_rope import Line, check_on_line, check_possible_on_rope, line_of
 
 MAX_GAP = 1e-3
@@ -38,6 +38,7 @@ def placed_slide(scene: SceneData, slide: Slide) -> Slide:
     check_on_line(scene, slide, line, s)
     if isinstance(line, Cable):
         slide = _framed(scene, slide.completed({"s": min(max(s, 0.0), line.length)}), line)
+        check_without_hinge(slide.where, line)
         _check_buffers(slide, line)
     else:
         slide = slide.completed({"s": s})

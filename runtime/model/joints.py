@@ -70,7 +70,8 @@ def joint_models(builder: ModelBuilder) -> Iterator[JointModel]:
         yield _joint(builder, joint)
     for cable in builder.scene.cables.values():
         if not cable.kind_of_element.director:
-            yield from (_joint_of_tangents(builder, cable, element) for element in cable.mesh.doubled)
+            yield from (_joint_of_tangents(builder, cable, element) for element in cable.mesh.doubled
+                        if element not in cable.hinges)
 
 
 def _joint_of_tangents(builder: ModelBuilder, cable: Cable, element: int) -> JointModel:

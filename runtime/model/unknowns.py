@@ -310,8 +310,9 @@ def supports(scene: SceneData, nodes: dict[str, list[Node]], signal: Callable[[S
         return nodes[cable][scene.cables[cable].node(s)]
 
     supported = _support_nodes(made, scene, at, signal)
-    joints = [(nodes[cable.name][node - 1], nodes[cable.name][node], "section") for cable in scene.cables.values()
-              for node in cable.mesh.first_node(cable.mesh.doubled).tolist() if cable.mesh.doubled]
+    joints = [(nodes[cable.name][node - 1], nodes[cable.name][node], "free" if element in cable.hinges else "section")
+              for cable in scene.cables.values() if (elements := cable.mesh.doubled)
+              for element, node in zip(elements, cable.mesh.first_node(elements).tolist(), strict=True)]
     made.tie_nodes([*joints, *((at(tie.cable, tie.s), at(tie.to, tie.at), tie.rotation)
                                for tie in scene.ties.values())], supported)
     return made

@@ -115,6 +115,9 @@ class Cable(DrawnCable, CableFields):
         if given:
             raise ValueError(f"has pieces and {given[0]}", f"leave {given[0]} out: each piece has its own "
                              + {"nodes": "elements", "rest_length": "length"}.get(given[0], given[0]))
+        if self.pieces[0].hinge:
+            raise ValueError("begins with a piece at a hinge, which joins a piece to the one before it",
+                             "leave hinge out of the first piece")
         if self.rest == "drawn" and not self._shape.straight:
             raise ValueError("is drawn curved and has pieces, whose stress-free shape is straight",
                              'give rest="straight"')

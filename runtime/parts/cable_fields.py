@@ -122,7 +122,7 @@ class CableFields(Part):
             assert self.given_material is not None, f"{self.where} has no material"
             return UniformPiece(0, self.n_elements, self.given_section, self.given_material),
         ends = [0, *accumulate(piece.elements for piece in self.pieces)]
-        return tuple(UniformPiece(first, end, piece.section, piece.material)
+        return tuple(UniformPiece(first, end, piece.section, piece.material, piece.hinge)
                      for piece, (first, end) in zip(self.pieces, pairwise(ends), strict=True))
 
     @property

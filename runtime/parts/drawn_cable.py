@@ -135,14 +135,19 @@ class DrawnCable(Fields):
 
     @property
     def doubled(self) -> tuple[int, ...]:
-        """Return the elements that begin at a node of their own, see `Mesh`: those of a piece whose strain under the
-        forces of the piece before it is another one.
+        """Return the elements that begin at a node of their own, see `Mesh`: those of a piece at a hinge, or whose
+        strain under the forces of the piece before it is another one.
         """
         pieces = self.uniform_pieces
         stiffness = [section_stiffness(self.stiffness_law, piece.section, piece.material, self.dim) for piece in pieces]
         counted = slice(0, 1) if self.kind_of_element.is_cable else slice(None)
         return tuple(piece.first for piece, before, own in zip(pieces[1:], stiffness, stiffness[1:], strict=False)
-                     if not np.array_equal(before[counted], own[counted]))
+                     if piece.hinge or not np.array_equal(before[counted], own[counted]))
+
+    @property
+    def hinges(self) -> tuple[int, ...]:
+        """Return the elements that begin at a hinge."""
+        return tuple(piece.first for piece in self.uniform_pieces if piece.hinge)
 
     @property
     def kernel_law(self) -> str:

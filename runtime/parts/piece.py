@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Field
 from .material import Material
 from .part import Part
 from .section import AnySection, Section
-from .validation import Count, items, positive, shown
+from .validation import Count, Flag, items, positive, shown
 
 
 class Piece(Part):
@@ -21,6 +21,8 @@ class Piece(Part):
     section: cross-section
     material: material
     elements: number of elements of equal length
+    hinge: whether a hinge joins it to the piece before it: the tangent, and of beams the section, may jump there. No
+        slide and no crossing passes a hinge
     """
 
     kind = "piece"
@@ -29,15 +31,19 @@ class Piece(Part):
     section: AnySection
     material: Material
     elements: Count
+    hinge: Flag = False
 
 
 class UniformPiece(NamedTuple):
-    """Elements of a cable, from `first` to the one before `end`, with one section and one material."""
+    """Elements of a cable, from `first` to the one before `end`, with one section and one material; hinge: as of a
+    `Piece`.
+    """
 
     first: int
     end: int
     section: Section
     material: Material
+    hinge: bool = False
 
 
 def _listed(value: Any) -> list[Any]:

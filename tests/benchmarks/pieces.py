@@ -148,14 +148,12 @@ def bead(element: str, elements: int) -> tuple[np.ndarray, np.ndarray]:
     scene = fu.Scene(gravity=(0, 0, 0))
     material = fu.Material(youngs_modulus=1e9, poisson_ratio=0.3, density=1000)
     length = span / (1 + stretch)
-    for name, start in (("left", 0.0), ("right", span / 2)):
-        scene.cable(name, start=(start, 0, 0), end=(start + span / 2, 0, 0), rest_length=length / 2, element=element,
-                    strain="engineering", elements=elements // 2, material=material,
-                    section=fu.GeneralSection(area=area, second_moment_about_z=0.0))
-    scene.pin("left", s=0)
-    scene.pin("right", s=length / 2)
-    scene.tie("left", s=length / 2, to="right", at=0, rotation="free")
-    scene.point_mass("left", s=length / 2, mass=mass)
+    scene.cable("string", start=(0, 0, 0), end=(span, 0, 0), element=element, strain="engineering", pieces=[
+        fu.Piece(length=length / 2, elements=elements // 2, material=material, hinge=hinge,
+                 section=fu.GeneralSection(area=area, second_moment_about_z=0.0)) for hinge in (False, True)])
+    for s in (0, length):
+        scene.pin("string", s=s)
+    scene.point_mass("string", s=length / 2, mass=mass)
     tension, per_length = material.youngs_modulus * area * stretch, material.density * area * length / span
     ratio = 2 * per_length * span / mass
     moving = [brentq(lambda a: a * np.sin(a / 2) - ratio * np.cos(a / 2), low, low + np.pi)

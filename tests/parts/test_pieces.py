@@ -229,3 +229,64 @@ def test_what_needs_one_section_says_so():
         warnings.simplefilter("ignore")
         with pytest.raises(fu.SceneError, match="several materials"):
             _ = scene.cables["w"].material
+
+
+def hinged(element: str, by_tie: bool) -> fu.Scene:
+    """Return a line under its weight, of two pieces with a hinge, or of two cables with a free tie between them."""
+    scene = fu.Scene(gravity=(0, -9.81, 0))
+    ends, up = [(0, 0, 0), (5, -1, 0), (9.9, 0, 0)], DIRECTORS.get(element, (0, 1, 0))
+    if by_tie:
+        for name, start, end, material in zip("wv", ends, ends[1:], (SOFT, STIFF), strict=False):
+            scene.cable(name, start=start, end=end, element=element, rest="straight", rest_length=5.0, up=up,
+                        section=SECTION, material=material, elements=6, **law_of(element))
+        scene.tie("w", s=5, to="v", at=0, rotation="free")
+        scene.pin("v", s=5)
+    else:
+        scene.cable("w", start=ends[0], end=ends[2], element=element, rest="straight", up=up, **law_of(element),
+                    pieces=[fu.Piece(length=5.0, section=SECTION, material=material, elements=6,
+                                     hinge=material is STIFF) for material in (SOFT, STIFF)])
+        scene.pin("w", s=10)
+    scene.pin("w", s=0)
+    scene.point_mass("w", s=5, mass=20.0)
+    return scene
+
+
+@pytest.mark.parametrize("element", ELEMENTS)
+def test_a_hinge_is_a_free_tie(element):
+    """At rest, in modes and in the section forces beside it; it carries no moment."""
+    one, other = (hinged(element, by_tie) for by_tie in (False, True))
+    rests = one.equilibrium(), other.equilibrium()
+    force = [np.asarray(rest["w@0.force"]) for rest in rests]
+    assert force[0] == pytest.approx(force[1], rel=1e-7, abs=1e-9)
+    if element != "beam24":  # whose pieces turn freely about the lines to the hinge
+        frequencies = [np.asarray(rest.scene.modes(5, about=rest).frequency) for rest in rests]
+        assert frequencies[0] == pytest.approx(frequencies[1], rel=1e-6, abs=1e-5)
+    at = [rest.section_forces("w", s=[2.0, 5 - 1e-7]) for rest in rests]
+    assert np.asarray(at[0]["force"]) == pytest.approx(np.asarray(at[1]["force"]), rel=1e-5, abs=1e-5)
+    assert np.asarray(at[0]["moment"])[0] == pytest.approx(np.asarray(at[1]["moment"])[0], rel=1e-5)
+    assert np.abs(np.asarray(at[0]["moment"])[1]).max() < 1e-5 * np.abs(np.asarray(at[0]["moment"])[0]).max()
+
+
+@pytest.mark.parametrize("element", ["cable12", "cable8p"])
+@pytest.mark.parametrize("integrator", ["genalpha", "radau", "explicit", "energy"])
+def test_a_hinge_moves_as_a_free_tie(element, integrator):
+    runs = [hinged(element, by_tie).equilibrium() for by_tie in (False, True)]
+    given = {"step": 1e-4} if integrator == "energy" else {"tol": 1e-6}
+    ends = []
+    for rest in runs:
+        rest.scene.force("w", s=2.0, value=(0, 300.0, 0))
+        ends.append(rest.scene.run(duration=0.01, initial=rest, output_step=0.01, integrator=integrator, **given))
+    assert ends[0]["w.position"][-1, :6] == pytest.approx(ends[1]["w.position"][-1, :6], abs=1e-6)
+
+
+def test_a_hinge_resumes_and_is_refused_where_something_slides(tmp_path):
+    scene = hinged("cable8p", False)
+    assert read(scene.to_toml(), "scene", fu.Scene).to_toml() == scene.to_toml()
+    check_file_and_resume(scene, tmp_path, 8, duration=0.02, tol=1e-4, output_step=0.001)
+    with refused('slide "x": moves along cable "w", whose tangent may jump at the hinge at 5 m; leave the hinge out, '
+                 "or end a cable on each side and join them by a tie"):
+        scene.slide(tuple(scene.cables["w"].point(2.0)), along="w", s=2.0, name="x")
+    with refused('cable "v": begins with a piece at a hinge, which joins a piece to the one before it; leave hinge out '
+                 "of the first piece"):
+        scene.cable("v", start=(0, 0, 0), end=(5, 0, 0), element="cable8p", rest="straight", pieces=[fu.Piece(
+            length=5.0, section=SECTION, material=SOFT, elements=2, hinge=True)])

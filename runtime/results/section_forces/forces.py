@@ -112,7 +112,7 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
                 for k in range(len(at.time))]  # wet parts change with time
         return {key: np.concatenate([found[key] for found in each]) for key in each[0]}
     loads = CableLoads(scene, model, at, concerned)
-    forces = element_forces(scene, model, at, loads, number)
+    forces = element_forces(model, at, loads, number)
     balance_force, balance_moment, change = balanced(cable, of, forces, loads, number, cuts)
     taut = moment if cable.is_curved else taut_bending(  # a curved wire pulled straight has a moment
         cable, balance_force, change, axes, cuts, lambda: kinks(scene, cable, of, forces, loads, number))

@@ -16,7 +16,7 @@ from ...parts.validation import LENGTH_TOLERANCE
 from ..shape_functions import on_axis
 from .balance import Cuts, balanced, resultants
 from .cable_loads import CableLoads
-from .layer import Kink, between, fixed_direction, line_bending, of_joint
+from .layer import Kink, between, fixed_direction, line_bending, of_hinge, of_joint
 from .nodal_forces import ElementForces
 
 ForceAt = Callable[[np.ndarray, bool], np.ndarray]
@@ -45,7 +45,8 @@ def _of_pieces(cable: Cable, model: CableModel, forces: ElementForces, loads: Ca
         for after, EI in ((False, one), (True, other)):
             force, _, change = balanced(cable, model, forces, loads, number, Cuts(model, s[:1, None], after))
             moments.append(EI * line_bending(lambda turn: np.ones(turn.shape[:2]), force, change)[:, 0])
-        found += of_joint(s, moments[0], moments[1], (one, other))
+        found += (of_hinge(s, moments[0], moments[1]) if pieces[1].hinge else
+                  of_joint(s, moments[0], moments[1], (one, other)))
     return found
 
 
@@ -56,6 +57,8 @@ def _of_points(cable: Cable, model: CableModel, forces: ElementForces, loads: Ca
         return []
     s = np.stack([model.mesh.each_start(load.element) + load.x for load in points], axis=1)
     inside = (s > LENGTH_TOLERANCE * cable.length) & (s < (1 - LENGTH_TOLERANCE) * cable.length)
+    for element in cable.hinges:
+        inside &= np.abs(s - cable.mesh.start(element)) > LENGTH_TOLERANCE * cable.length
     before, instants, found = force_at(s, False), np.arange(len(s)), []
     for k, load in enumerate(points):
         e = forces.e[instants, load.element]

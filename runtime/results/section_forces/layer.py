@@ -56,6 +56,13 @@ def of_joint(s: np.ndarray, before: np.ndarray, after: np.ndarray, EI: tuple[flo
     return [Kink(s, np.zeros_like(before), none, jump * root, side) for root, side in zip(roots, (-1, 1), strict=True)]
 
 
+def of_hinge(s: np.ndarray, before: np.ndarray, after: np.ndarray) -> list[Kink]:
+    """Return both sides of a hinge, which carries no moment, between moments (T, 3) of the lines."""
+    none = np.zeros(len(s))
+    return [Kink(s, np.zeros_like(before), none, 2 * side * moment, side)
+            for moment, side in ((before, -1), (after, 1))]
+
+
 Stiffness = Callable[[np.ndarray], np.ndarray]
 """E I (T, n), N m^2, of bending about directions (T, n or 1, 3)."""
 

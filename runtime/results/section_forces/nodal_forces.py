@@ -12,7 +12,6 @@ from ...model.joints import JointModel
 from ...model.model import CableModel, Model, orders_of, per_grown
 from ...model.states import element_coordinates, positions
 from ...model.unknowns import by_unknowns
-from ...parts.scene_data import SceneData
 from .about_start import about
 from .cable_loads import CableLoads, Instants, PointLoad
 from .spreads import Spread
@@ -34,7 +33,7 @@ class ElementForces:
     masses: list[PointLoad]
 
 
-def element_forces(scene: SceneData, model: Model, at: Instants, loads: CableLoads, cable: int) -> ElementForces:
+def element_forces(model: Model, at: Instants, loads: CableLoads, cable: int) -> ElementForces:
     """Return the forces of one of the cables of the loads, by its number; at rest without accelerations."""
     forces = {k: internal(model.cables[k], at) - _external(model, k, at, loads) for k in loads.cables}
     accelerations = np.zeros_like(at.v) if at.is_rest else _accelerations(model, at, forces, loads)
@@ -49,7 +48,7 @@ def element_forces(scene: SceneData, model: Model, at: Instants, loads: CableLoa
     mass_damping = of.of_elements(lambda piece: piece.mass_damping)[:, None, None]
     inertia = a + mass_damping * element_coordinates(of, at.v) - _uniform(of, loads.gravity)
     return ElementForces(given, inertia, element_coordinates(of, at.q), spreads,
-                         [loads.of_mass(cable, mass, inertia) for mass in scene.masses_on(of.name)])
+                         [loads.of_mass(cable, mass, inertia) for mass in loads.scene.masses_on(of.name)])
 
 
 def internal(cable: CableModel, at: Instants) -> np.ndarray:

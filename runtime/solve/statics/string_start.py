@@ -239,10 +239,11 @@ class _Line:
         stiffness = {int(c): np.repeat(self._stiffness(part, lambda section: min(section.moments()[1:3])), self.parts)
                      * (not part.is_curved) for c, part in zip(self.group, self.drawn, strict=True)}
         nodes, sides, bends = [], [], []
-        for c, along, length in zip(self.group, self.along, self.lengths, strict=True):
+        for c, along, length, part in zip(self.group, self.along, self.lengths, self.drawn, strict=True):
             nodes.append(np.stack([along[:-2], along[1:-1], along[2:]], axis=1))
             sides.append(np.stack([length[:-1], length[1:]], axis=1))
             bends.append(np.minimum(stiffness[int(c)][:-1], stiffness[int(c)][1:]))
+            bends[-1][self.parts * np.array(part.hinges, dtype=int) - 1] = 0.0
         for tie in self.ties:
             (before, one), (after, other) = self._across(tie)
             nodes.append(np.array([[before, self._number(tie.first), after]]))
