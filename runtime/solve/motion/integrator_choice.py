@@ -33,11 +33,12 @@ MAX_DENSE_UNKNOWNS = 120
 """Unknowns up to which matrices are arrays: assembly of sparse ones takes longer than products with zeros."""
 
 
-MAX_TRIAL_COST_RATIO = 8.0
+MAX_TRIAL_COST_RATIO = 4.0
 """Ratio of expected costs, implicit over explicit, up to which the implicit method runs a trial."""
 
-MAX_TRIAL_COST_RATIO_WITH_FRICTION = 3.0
-"""The same with kinks of friction, which the implicit method resolves less well."""
+FRICTION_TRIAL_MARGIN = 1.5
+"""Cost of the explicit method over that of an implicit one up to which it is taken with kinks of friction, which the
+implicit method resolves less well."""
 
 MIN_TRIAL_EVALUATIONS = 3000.0
 """Lower bound of the explicit method's evaluations of eq 38 for a trial against it."""
@@ -53,7 +54,7 @@ LOW_ORDER_TOL_WITH_FRICTION = 4e-2
 LOW_ORDER_TOL_FRACTION = 0.7
 """Fraction of tol for the method of low order, whose error can exceed its tol (tests/benchmarks/choice.py)."""
 
-MAX_LOW_ORDER_COST_RATIO = 3.0
+MAX_LOW_ORDER_COST_RATIO = 4.0
 """Upper bound of the cost of the method of low order over the expected cost of radau."""
 
 LOW_ORDER_EVALUATIONS_PER_RADIAN = 42.0
@@ -103,8 +104,9 @@ def choose(settings: RunSettings, scene: SceneData, model: Model, engine: Engine
     found = cheapest(demands, settings.duration)
     if not suits_low_order(demands, scene, model):
         return found
-    with_low_order = begin_with_low_order if demands.tol >= LOW_ORDER_TOL else end_with_low_order
-    return with_low_order(demands, settings.duration, *found)
+    if demands.tol >= LOW_ORDER_TOL:
+        return begin_with_low_order(demands, settings.duration, *found)
+    return end_with_low_order(demands, settings.duration, *found) if model.slides else found
 
 
 def tol_of(settings: RunSettings, method: Integrator) -> float:
@@ -135,12 +137,13 @@ def cheapest(demands: Demands, duration: float) -> tuple[Integrator, str, Rival 
     said = {one: cost for one in INTEGRATORS.values() if (cost := one.cost(demands)) is not None}
     stable, limited = stable_at(fixed_step=False), min(said, key=lambda one: (one.stability is None, said[one][0]))
     why, sure = ", ".join(text for _, text in said.values()), said[limited][0]
-    if said[stable][0] > sure * (MAX_TRIAL_COST_RATIO_WITH_FRICTION if demands.friction else MAX_TRIAL_COST_RATIO):
+    if said[stable][0] > sure * MAX_TRIAL_COST_RATIO:
         return _made(limited), why, None
     worth = sure * duration >= MIN_TRIAL_EVALUATIONS
     if not worth and said[stable][0] > sure:
         return _made(limited), why, None
-    return _made(stable), why, Rival(_made(limited), sure * duration) if worth else None
+    most = sure * duration / (FRICTION_TRIAL_MARGIN if demands.friction else 1.0)
+    return _made(stable), why, Rival(_made(limited), most) if worth else None
 
 
 def suits_low_order(demands: Demands, scene: SceneData, model: Model) -> bool:

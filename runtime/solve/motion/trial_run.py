@@ -19,13 +19,13 @@ from .row_stream import RowStream
 TRIAL_DURATION_FRACTION = 0.25
 """Fraction of the duration that a trial runs."""
 
-ASSESSMENT_COST_FRACTION = 0.05
+ASSESSMENT_COST_FRACTION = 0.025
 """The remaining cost is assessed each time the trial has used this fraction of the rival's cost."""
 
 SETTLING_ASSESSMENTS = 4
 """Number of assessments before the rate is used: the motion may begin with a shock."""
 
-MOTION_GROWTH, GROWING_ASSESSMENTS = 1.3, 10
+MOTION_GROWTH, GROWING_ASSESSMENTS = 1.3, 20
 """Growth of the largest motion between assessments above which the rate is not used, since the permitted error grows
 with it, and the number of assessments up to which it is not."""
 
@@ -51,23 +51,25 @@ def on_trial(engine: Engine, rival: Rival, method: Integrator, duration: float, 
     take them.
 
     Returns the status of the run, "running" before its end, the reason for the rival, "" where it is not cheaper, and
-    then the cost of the method for all of the run, in evaluations. The first part of the cost, in which steps find
-    their size, does not count.
+    then the cost of the method for all of the run, in evaluations. The rate is that of the second half of the work
+    done, since steps find their size in the first one.
     """
     share = max(1, int(min(ASSESSMENT_COST_FRACTION * rival.cost / method.cost_of_evaluation, MAX_EVALUATIONS)))
-    before, shares, motion = engine.time, 0, 0.0
+    times, motion = [engine.time], 0.0
     while True:
-        shares += 1
+        shares = len(times)
         status = engine.advance(observer, every, stream, most_evaluations=shares * share, shown=observer.is_shown)
         time = engine.time
         if status != "running" or time >= TRIAL_DURATION_FRACTION * duration:
             return status, "", 0.0
         grows = shares < GROWING_ASSESSMENTS and engine.controlled_motion > MOTION_GROWTH * motion > 0.0
         motion = engine.controlled_motion
-        remains = ASSESSMENT_COST_FRACTION * (duration - time) / max(time - before, 1e-12 * duration)
+        half = shares // 2
+        rate = (time - times[half]) / (shares - half)
+        remains = ASSESSMENT_COST_FRACTION * (duration - time) / max(rate, 1e-12 * duration)
         if shares > 1 and not grows and remains > (EARLY_STOP_COST_RATIO if shares < SETTLING_ASSESSMENTS else 1.0):
             spent = shares * ASSESSMENT_COST_FRACTION * rival.cost
             return status, (f"{method.name} on trial took work like {spent:.3g} to t = {time:.3g} s: what remains "
                             f"would take {remains:.2g} times the work that calls for {rival.method.name}"), (
                                 spent + remains * rival.cost)
-        before = time
+        times.append(time)
