@@ -63,6 +63,8 @@ SOURCES = (
     "slide_span_cable8p_planar_point.c",
     "slide_span_cable12_rigid.c",
     "slide_span_cable12_point.c",
+    "branch.c",
+    "planar_branch.c",
     "crossing.c",
     "planar_crossing.c",
     "drag.c",

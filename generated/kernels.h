@@ -874,6 +874,44 @@ fu_slide_flowing_gradient_kernel slide_span_cable8p_planar_point_flowing_gradien
 /* e 4x3, e_next 4x3, b 3, b_next 3, G 3x18 */
 fu_slide_flowing_gradient_kernel slide_span_cable12_point_flowing_gradient;
 
+typedef void fu_branch_measures_kernel(const fu_real *i_0, const fu_real *a, const fu_real *b, fu_real *m);
+/* strain and curvature of a point: i_0 [1]; a [1]; b [1/m] -> m [1, 1/m] */
+/* i_0 3, a 3, b 3, m 4 */
+fu_branch_measures_kernel branch_measures;
+/* i_0 2, a 2, b 2, m 2 */
+fu_branch_measures_kernel planar_branch_measures;
+
+typedef void fu_branch_force_kernel(const fu_real *i_0, const fu_real *a, const fu_real *b, const fu_real *n, fu_real *g);
+/* forces of a stress on the slope and its derivative: i_0 [1]; a [1]; b [1/m]; n [N, N m] -> g [N, N m] */
+/* i_0 3, a 3, b 3, n 4, g 6 */
+fu_branch_force_kernel branch_force;
+/* i_0 2, a 2, b 2, n 2, g 4 */
+fu_branch_force_kernel planar_branch_force;
+
+typedef void fu_branch_tangent_kernel(const fu_real *i_0, const fu_real *a, const fu_real *b, const fu_real *n, const fu_real *D, fu_real *K);
+/* derivatives of the forces by the slope and its derivative: i_0 [1]; a [1]; b [1/m]; n [N, N m]; D [N, N m, N m^2]
+ * -> K [N, N m, N m^2] */
+/* i_0 3, a 3, b 3, n 4, D 4x4, K 6x6 */
+fu_branch_tangent_kernel branch_tangent;
+/* i_0 2, a 2, b 2, n 2, D 2x2, K 4x4 */
+fu_branch_tangent_kernel planar_branch_tangent;
+
+typedef void fu_branch_hold_kernel(const fu_real *m, const fu_real *m_0, const fu_real *d_0, const fu_real *k, fu_real decay, fu_real share, fu_real *n, fu_real *D);
+/* stress of a spring in series with a dashpot: m [1, 1/m]; m_0 [1, 1/m]; d_0 [1, 1/m]; k [N, N m^2]; decay [1];
+ * share [1] -> n [N, N m]; D [N, N m, N m^2] */
+/* m 4, m_0 4, d_0 4, k 4, n 4, D 4x4 */
+fu_branch_hold_kernel branch_hold;
+/* m 2, m_0 2, d_0 2, k 2, n 2, D 2x2 */
+fu_branch_hold_kernel planar_branch_hold;
+
+typedef void fu_branch_slide_kernel(const fu_real *m, const fu_real *m_0, const fu_real *d_0, const fu_real *k, fu_real limit, fu_real *n, fu_real *D);
+/* stress of a spring in series with a slider that slides: m [1, 1/m]; m_0 [1, 1/m]; d_0 [1, 1/m]; k [N, N m^2];
+ * limit [N, N m] -> n [N, N m]; D [N, N m, N m^2] */
+/* m 4, m_0 4, d_0 4, k 4, n 4, D 4x4 */
+fu_branch_slide_kernel branch_slide;
+/* m 2, m_0 2, d_0 2, k 2, n 2, D 2x2 */
+fu_branch_slide_kernel planar_branch_slide;
+
 typedef void fu_crossing_closest_kernel(const fu_real *d, const fu_real *t, const fu_real *k, fu_real *step);
 /* a step of Newton's method to the closest points: d [m]; t [1]; k [1/m] -> step [m] */
 /* d 3, t 2x3, k 2x3, step 2 */
@@ -2364,6 +2402,17 @@ typedef struct {
     fu_slide_flowing_gradient_kernel *flowing_gradient;
 } fu_slide_kernels;
 
+/* What the engine needs of a branch. */
+typedef struct {
+    const char *name;
+    int dim;
+    fu_branch_measures_kernel *measures;
+    fu_branch_force_kernel *force;
+    fu_branch_tangent_kernel *tangent;
+    fu_branch_hold_kernel *hold;
+    fu_branch_slide_kernel *slide;
+} fu_branch_kernels;
+
 /* What the engine needs of a crossing. */
 typedef struct {
     const char *name;
@@ -2625,6 +2674,8 @@ typedef struct {
     const fu_modal_kernels *modals;
     int n_slides;
     const fu_slide_kernels *slides;
+    int n_branchs;
+    const fu_branch_kernels *branchs;
     int n_crossings;
     const fu_crossing_kernels *crossings;
     int n_drags;
@@ -2667,6 +2718,8 @@ static inline const void *fu_find(const fu_tables *tables, const char *role, con
         if (!strcmp(tables->modals[i].name, name)) return &tables->modals[i];
     for (int i = 0; i < tables->n_slides && !strcmp(role, "slide"); ++i)
         if (!strcmp(tables->slides[i].name, name)) return &tables->slides[i];
+    for (int i = 0; i < tables->n_branchs && !strcmp(role, "branch"); ++i)
+        if (!strcmp(tables->branchs[i].name, name)) return &tables->branchs[i];
     for (int i = 0; i < tables->n_crossings && !strcmp(role, "crossing"); ++i)
         if (!strcmp(tables->crossings[i].name, name)) return &tables->crossings[i];
     for (int i = 0; i < tables->n_drags && !strcmp(role, "drag"); ++i)

@@ -208,6 +208,12 @@ static const fu_slide_kernels slides[] = {
      slide_span_cable12_point_residual, slide_span_cable12_point_tangent, 0, slide_span_cable12_point_flowing_gradient},
 };
 
+static const fu_branch_kernels branchs[] = {
+    {"branch", 3, branch_measures, branch_force, branch_tangent, branch_hold, branch_slide},
+    {"planar_branch", 2, planar_branch_measures, planar_branch_force, planar_branch_tangent, planar_branch_hold,
+     planar_branch_slide},
+};
+
 static const fu_crossing_kernels crossings[] = {
     {"crossing", 3, crossing_closest, crossing_contact, crossing_force, crossing_motion, crossing_stretch,
      crossing_turned, crossing_sticking, crossing_sliding, crossing_step},
@@ -389,6 +395,10 @@ static const fu_taut_rope_kernels taut_ropes[] = {
 #define FU_ARGUMENTS_ssvvvv_2 *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]
 #define FU_ARGUMENTS_sssvvvv_1 *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]
 #define FU_ARGUMENTS_ssssvvvv_1 *a[0], *a[1], *a[2], *a[3], a[4], a[5], a[6], a[7], out[0]
+#define FU_ARGUMENTS_vvvv_1 a[0], a[1], a[2], a[3], out[0]
+#define FU_ARGUMENTS_vvvvv_1 a[0], a[1], a[2], a[3], a[4], out[0]
+#define FU_ARGUMENTS_vvvvss_2 a[0], a[1], a[2], a[3], *a[4], *a[5], out[0], out[1]
+#define FU_ARGUMENTS_vvvvs_2 a[0], a[1], a[2], a[3], *a[4], out[0], out[1]
 #define FU_ARGUMENTS_vvvv_6 a[0], a[1], a[2], a[3], out[0], out[1], out[2], out[3], out[4], out[5]
 #define FU_ARGUMENTS_vvvvvv_6 a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5]
 #define FU_ARGUMENTS_vvvvvvvsvvvvvvv_3 a[0], a[1], a[2], a[3], a[4], a[5], a[6], *a[7], a[8], a[9], a[10], a[11], a[12], a[13], a[14], out[0], out[1], out[2]
@@ -906,6 +916,16 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(slide_span_cable12_point_residual, ssvvvv_2) \
     X(slide_span_cable12_point_tangent, ssvvvv_2) \
     X(slide_span_cable12_point_flowing_gradient, ssssvvvv_1) \
+    X(branch_measures, vvv_1) \
+    X(branch_force, vvvv_1) \
+    X(branch_tangent, vvvvv_1) \
+    X(branch_hold, vvvvss_2) \
+    X(branch_slide, vvvvs_2) \
+    X(planar_branch_measures, vvv_1) \
+    X(planar_branch_force, vvvv_1) \
+    X(planar_branch_tangent, vvvvv_1) \
+    X(planar_branch_hold, vvvvss_2) \
+    X(planar_branch_slide, vvvvs_2) \
     X(crossing_closest, vvv_1) \
     X(crossing_contact, vvvv_6) \
     X(crossing_force, vvvvvv_6) \
@@ -1232,6 +1252,7 @@ const fu_tables fu_all = {
     2, bodys,
     2, modals,
     14, slides,
+    2, branchs,
     2, crossings,
     2, drags,
     2, frames,

@@ -1,5 +1,5 @@
 """Small scenes from one level of each of several factors: a cable, its law, shape, pieces, growth, section and support,
-its rider, a joint, a rope, a load, a fluid, a contact, an event.
+its rider, a joint, a rope, a load, a fluid, a contact, an event, memory.
 
 Levels come from the lists of the project. A kind in a list without an entry in a table here fails
 `test_pairs_of_features.py`; with an entry, it is combined with everything else.
@@ -430,17 +430,20 @@ def laws() -> dict[str, list[str]]:
     return {element: possible_laws(kind) for element, kind in built_in().items()}
 
 
+MEMORY: dict[str, Callable[[Site], object]] = {
+    "none": lambda on: None, "relaxation": lambda on: on.scene.relaxation("wire", stiffness=1e3, time=TIME)}
+
 FACTORS: dict[str, list[str]] = {
     "element": ["cable12", *sorted(built_in().keys() - {"cable12"})],
     "law": ["default", *dict.fromkeys(law for of in laws().values() for law in of)],
     "drawn": [*DRAWN], "pieces": [*PIECES], "growth": [*GROWTH], "section": [*SECTIONS],
     "damping": [*DAMPING], "support": [*SUPPORTS], "end": [*ENDS],
     "rider": [*RIDERS], "joint": [*JOINED], "rope": [*ROPES], "load": [*LOADS], "fluid": [*FLUIDS],
-    "touch": [*TOUCHING], "event": [*EVENTS]}
+    "touch": [*TOUCHING], "event": [*EVENTS], "memory": [*MEMORY]}
 """By factor its levels, the first of which is neutral."""
 
-ADDED = {"support": SUPPORTS, "end": ENDS, "rider": RIDERS, "joint": JOINED, "rope": ROPES, "load": LOADS,
-         "fluid": FLUIDS, "touch": TOUCHING, "event": EVENTS}
+ADDED = {"memory": MEMORY, "support": SUPPORTS, "end": ENDS, "rider": RIDERS, "joint": JOINED, "rope": ROPES,
+         "load": LOADS, "fluid": FLUIDS, "touch": TOUCHING, "event": EVENTS}
 
 
 def _made_of(section: object, material: fu.Material, row: dict[str, str]) -> dict:

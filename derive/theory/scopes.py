@@ -362,6 +362,16 @@ def resistance_scope(name: str) -> Scope:
                                     Symbol(r"\mathbf{f}", "f", column), *friction, *buffer))
 
 
+def branch_scope(name: str) -> Scope:
+    """Return the scope of branches beside the law of a cable."""
+    letters = (r"\mathbf{i}_{0}", "i_0"), (r"\mathbf{a}", "a"), (r"\mathbf{b}", "b"), (r"\mathbf{n}", "n"), (
+        r"\mathbf{m}_{1}", "m"), (r"\mathbf{m}_{0}", "m_0"), (r"\mathbf{d}_{0}", "d_0")
+    return Scope(families()[name], (*(Symbol(latex, argument, column) for latex, argument in letters),
+                                    Symbol(r"\mathbf{D}", "D", matrix), Symbol("k", "k", entry(0)),
+                                    Symbol(r"\delta", "decay", number), Symbol(r"\sigma", "share", number),
+                                    Symbol(r"\lambda", "limit", number)))
+
+
 def drag_scope(name: str) -> Scope:
     """Return the scope of drag."""
     return Scope(families()[name], (Symbol(r"\mathbf{t}", "t", column), Symbol(r"\mathbf{w}", "w", column),

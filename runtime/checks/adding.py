@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import SceneError
+from ..parts.branch import Branch
 from ..parts.cable import Cable
 from ..parts.contact import Contact
 from ..parts.crossing import Crossing
@@ -28,6 +29,7 @@ from ..parts.support import Support, Tie
 from ..parts.surface import Surface
 from ..parts.validation import show
 from . import rope_loads
+from .branch_placement import placed_branch
 from .contact_placement import placed_contact, placed_contacts, placed_surface
 from .crossing_placement import placed_crossing
 from .drag_placement import placed_drag, placed_fluid
@@ -83,8 +85,8 @@ def _lie_in_one_plane(cable: Cable, other: Cable) -> bool:
 _CHECKS: dict[type[Part], Callable[[SceneData, Any], Part]] = {
     Cable: placed_cable, Support: placed_support, Tie: placed_tie, Rope: placed_rope, Joint: placed_joint,
     Slide: placed_slide, Load: rope_loads.placed, PointForce: placed_point_force, PointMass: placed_mass,
-    Event: placed_event, Fluid: placed_fluid, Drag: placed_drag, Crossing: placed_crossing, Surface: placed_surface,
-    Contact: placed_contact}
+    Event: placed_event, Fluid: placed_fluid, Drag: placed_drag, Branch: placed_branch,
+    Crossing: placed_crossing, Surface: placed_surface, Contact: placed_contact}
 
 
 def check_of(part: Part) -> Callable[[SceneData, Any], Any]:

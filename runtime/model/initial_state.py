@@ -45,7 +45,7 @@ class InitialState(Mapping[str, np.ndarray]):
                  slipped: Sequence[str] = (), aside: Sequence[str] = ()):
         """Check and store the arrays. Raises SceneError for values that are no numbers.
 
-        time: of the run that they are from, in s; unstretched: names of contacts and crossings whose friction springs
+        time: of the run that they are from, in s; unstretched: names of contacts, crossings and branches whose springs
         were stretched in that run; slipped: names of sheaves on which ropes without mass had slipped; aside: of those
         in whose grooves they lay beside the middle.
         """
@@ -85,7 +85,7 @@ class InitialState(Mapping[str, np.ndarray]):
             found = [f"starts from a state of another run, at its t = {self.time:.6g} s: signals begin anew at t = 0"]
         if self._unstretched:
             names = ", ".join(f'"{name}"' for name in self._unstretched)
-            found.append(f"the friction springs of {names} begin unstretched, which were stretched in that run: errors "
+            found.append(f"the springs of {names} begin unstretched, which were stretched in that run: errors "
                          "may be larger than tol. To continue that run, give it save and resume=True")
         return found
 

@@ -20,6 +20,7 @@ from ..parts.body_shape import Shape
 from ..parts.part import Part
 from ..parts.plane_axes import PlaneAxes
 from .attachments import AttachmentModel
+from .branches import BranchModel
 from .combinations import Combinations
 from .contacts import ContactModel, HardContactModel, RopeContactModel
 from .coupling import CouplingModel
@@ -331,6 +332,7 @@ class Model:
     joints = _couplings_of(JointModel)  # first those between a rider's axes and its cable
     point_forces = _couplings_of(PointForceModel)
     drags = _couplings_of(DragModel)
+    branches = _couplings_of(BranchModel)
     crossings = _couplings_of(CrossingModel)
     spans = _couplings_of(SpanModel)
     sheaves = _couplings_of(SheaveModel)

@@ -226,6 +226,16 @@ def _drags(model: Model, at: States, kind: str, asked: Asked) -> Values:
     return found
 
 
+def _branches(model: Model, at: States, kind: str, asked: Asked) -> Values:
+    """Return the results of branches by name, at the points of their elements."""
+    found: Values = {}
+    for name in dict.fromkeys(branch.name for branch in model.branches if asked(branch.name)):
+        elements = [k for k, branch in enumerate(model.branches) if branch.name == name]
+        of = outputs_by_name(kind, at.numbers[kind][:, elements])
+        found[name] = {"tension": of["tension"].reshape(len(at.q), -1)}
+    return found
+
+
 def _ropes(model: Model, at: States, kind: str, asked: Asked) -> Values:
     """Return points along ropes, and the forces at their ends."""
     anchors = model.of(AnchorModel)
@@ -248,6 +258,6 @@ def _none(model: Model, at: States, kind: str, asked: Asked) -> Values:
 
 
 RESULTS = {"slide": _slides, "anchor": _ropes, "joint": _joints, "point_force": _point_forces, "drag": _drags,
-           "contact": _contacts, "rope contact": _rope_contacts, "hard_contact": _hard_contacts,
+           "branch": _branches, "contact": _contacts, "rope contact": _rope_contacts, "hard_contact": _hard_contacts,
            "taut_point": _taut_points, "taut_rope": _none}
 """Functions from outputs to results, of the kinds of couplings whose results are not the outputs themselves."""

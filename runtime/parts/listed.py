@@ -21,6 +21,7 @@ from .load import Moment as Moment
 from .spring import Spring as Spring
 from .fluid import Fluid as Fluid
 from .drag import Drag as Drag
+from .branch import Relaxation as Relaxation
 from .crossing import Crossing as Crossing
 from .surface import Surface as Surface
 from .contact import Contact as Contact

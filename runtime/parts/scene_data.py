@@ -12,6 +12,7 @@ import numpy as np
 
 from ..errors import SceneError
 from .attachment import Attachment
+from .branch import Relaxation
 from .cable import Cable
 from .contact import Contact
 from .crossing import Crossing
@@ -118,6 +119,7 @@ class SceneData:
     point_forces: dict[str, PointForce]
     fluids: dict[str, Fluid]
     drags: dict[str, Drag]
+    branches: dict[str, Relaxation]
     crossings: dict[str, Crossing]
     surfaces: dict[str, Surface]
     contacts: dict[str, Contact]

@@ -7,6 +7,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from .branch import Relaxation
 from .cable import Cable
 from .contact import Contact
 from .crossing import Crossing
@@ -316,6 +317,16 @@ class SceneMethods(SceneData):
         name: str | None = None,
     ) -> Drag:
         """Add a Drag, which see."""
+
+    def relaxation(
+        self,
+        cable: Named,
+        *,
+        stiffness: float,
+        time: float,
+        name: str | None = None,
+    ) -> Relaxation:
+        """Add a Relaxation, which see."""
 
     def crossing(
         self,

@@ -153,4 +153,4 @@ def test_friction_springs_of_a_state_begin_unstretched_and_a_message_says_so(fri
     scene.contact("A", "ground", stiffness=1e4, friction=friction, name="sole")
     settings = {"duration": 0.02, "tol": 1e-4, "output_step": 0.01}
     later = scene.run(**settings, initial=scene.run(**settings).at(0.01))
-    assert any('friction springs of "sole" begin unstretched' in note for note in later.report["messages"]) == noted
+    assert any('springs of "sole" begin unstretched' in note for note in later.report["messages"]) == noted

@@ -140,6 +140,7 @@ def everything() -> fu.Scene:
     scene.surface("bed", fu.Plane(point=(0, -5, 0)))
     scene.surface("side", fu.Plane(point=(0, -6, 0)))
     scene.contact("hook", "bed", name="landing")
+    scene.relaxation("hook", stiffness=1e3, time=0.5, name="viscosity")
     scene.crossing("rope", "B", at=(0, 0.5, 0), axis=(0, 0, 1), length=0.2, stiffness=1e3, name="touch")
     return scene
 
@@ -200,6 +201,7 @@ OTHERS = {
     "surface": {"name": "floor", "shape": fu.HeightField(x=(0, 1), heights=(-7, -8)), "on": "B", "at": (0, -1, 0)},
     "contact": {"a": "rope", "b": "side", "stiffness": 1e4, "exponent": 1.5, "damping": 0.1, "friction": 0.2,
                 "tangential_stiffness": 1e5, "radius": 0.02, "name": "x"},
+    "relaxation": {"cable": "rope", "stiffness": 2e3, "time": 0.7, "name": "other"},
     "crossing": {"a": "hook", "b": "A", "at": (0, 0.6, 0), "axis": (0, 1, 1), "length": 0.3, "radius": 0.02,
                  "stiffness": 2e3, "exponent": 1.5, "damping": 0.1, "tangential_stiffness": 1e5,
                  "friction": fu.Friction(coefficient=0.2), "side": (0, 1, 0), "name": "x"},

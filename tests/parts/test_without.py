@@ -39,6 +39,7 @@ def everything() -> fu.Scene:
     scene.spring(("n-rope", 1.0), ("n-bar", (0.5, 0, 0)), stiffness=1.0, name="n-spring")
     scene.fluid(density=1.2, name="n-air")
     scene.drag("n-rope", normal=1.0, name="n-drag")
+    scene.relaxation("n-rope", stiffness=1e3, time=0.5, name="n-relaxation")
     scene.crossing("n-rope", "n-beam", stiffness=1e3, name="n-crossing")
     scene.surface("n-floor", shape=fu.Plane(normal=(0, 1, 0), point=(0, -9, 0)))
     scene.surface("n-deck", on="n-hook", shape=fu.Plane(normal=(0, 1, 0), point=(0, -2, 0)))

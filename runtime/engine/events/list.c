@@ -20,6 +20,7 @@
     WITH_EVENTS(drag)                                                                                                  \
     WITH_EVENTS(crossing)                                                                                              \
     WITH_EVENTS(contact)                                                                                               \
+    ALONE(branch)                                                                                                      \
     ALONE(rope_contact)                                                                                                \
     WITH_EVENTS(hard_contact)
 

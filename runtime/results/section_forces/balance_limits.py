@@ -31,10 +31,14 @@ def balanced_cables(scene: SceneData, model: Model, cable: int, is_rest: bool) -
 def out_of_balance(scene: SceneData, model: Model, cable: int, is_rest: bool) -> SceneError | None:
     """Return why the section forces of a cable, by its number, cannot be computed by balance, or None.
 
-    Contact with friction is known at rest only, and contact with a surface of a body never. Contacts of other cables
-    count only if ties connect these to this one.
+    Forces of branches are not known, contact with friction is at rest only, and contact with a surface of a body never.
+    Contacts of other cables count only if ties connect these to this one.
     """
     concerned = balanced_cables(scene, model, cable, is_rest)
+    for branch in model.branches:
+        if branch.cable in concerned:
+            return SceneError(scene.branches[branch.name].where, "has forces within elements that a balance does not "
+                              f'know, of cable "{model.cables[branch.cable].name}"', REMEDY)
     for contact in model.contacts:
         if contact.cable in concerned and (why := _unknown(contact, is_rest)):
             return SceneError(f'contact "{contact.name}"', f'{why} "{model.cables[contact.cable].name}"', REMEDY)

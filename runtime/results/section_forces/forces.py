@@ -102,6 +102,7 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
     nodal = at.value(f"{name}.nodal_vectors")
     start = None if at.start is None else at.start(f"{name}.nodal_vectors")
     force, moment, axes, strain = constitutive(cable, nodal, cuts, at.time, start)
+    force = force + _of_branches(scene, at, cable, cuts)[..., None] * axes[..., 0, :]
     if method == "constitutive":
         return {"force": force, "moment": moment} | components(cable, force, moment, axes, strain)
     if (refusal := out_of_balance(scene, model, number, at.is_rest)) is not None:
@@ -117,6 +118,18 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
     taut = moment if cable.is_curved else taut_bending(  # a curved wire pulled straight has a moment
         cable, balance_force, change, axes, cuts, lambda: kinks(scene, cable, of, forces, loads, number))
     return balanced_components(cable, (balance_force, balance_moment), (force, moment), taut, axes, strain, cuts)
+
+
+def _of_branches(scene: SceneData, at: Instants, cable: Cable, cuts: Cuts) -> np.ndarray:
+    """Return the tension (T, n) in N of the branches beside the law of a cable, linear over each element."""
+    total = np.zeros((len(at.time), cuts.s.shape[1]))
+    instants, place = np.arange(len(at.time))[:, None], 2 * cuts.x / cable.mesh.each_length(cuts.element) - 1
+    for branch in scene.branches.values():
+        if branch.cable == cable.name:
+            tension = at.value(f"{branch.name}.tension").reshape(len(at.time), cable.n_elements, -1)
+            first, second = np.moveaxis(tension[instants, cuts.element], -1, 0)
+            total += first + (second - first) * (1 + place * np.sqrt(3)) / 2  # through the points of Gauss
+    return total
 
 
 def along_ground(model: Model, name: str, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:

@@ -1,0 +1,48 @@
+"""Checks of branches against their scene."""
+
+from __future__ import annotations
+
+from ..errors import SceneError, near
+from ..parts.branch import Branch
+from ..parts.scene_data import SceneData
+
+ELEMENTS = ("cable8p", "cable12")
+"""Elements whose strain and curvature a branch takes at two points."""
+
+
+def placed_branch(scene: SceneData, part: Branch) -> Branch:
+    """Return the branch, checked to suit its cable. Raises SceneError."""
+    if part.cable in scene.ropes:
+        raise SceneError(
+            part.where,
+            f'acts on cables alone, but "{part.cable}" is a rope, through whose elements the material moves',
+            "take a cable",
+        )
+    if part.cable not in scene.cables:
+        raise SceneError(part.where, f'there is no cable "{part.cable}"', near(part.cable, scene.cables))
+    cable = scene.cables[part.cable]
+    if cable.library is not None or cable.element not in ELEMENTS:
+        raise SceneError(
+            part.where,
+            f"acts on {' and '.join(ELEMENTS)}, but {cable.where} is of {cable.element}",
+            "take one of these elements",
+        )
+    if cable.kernel_law.endswith("tension_only"):
+        raise SceneError(
+            part.where,
+            f"{cable.where} resists tension alone, and a branch would push",
+            'take the membrane "full" or "assumed"',
+        )
+    if cable.temperature is not None or cable.growth.signal is not None:
+        raise SceneError(
+            part.where,
+            f"{cable.where} has a temperature or a rest_length that changes, which the branch would take for strain",
+            "leave it out",
+        )
+    if part.bends and cable.is_curved:
+        raise SceneError(
+            part.where,
+            f"{cable.where} is curved where it is free of stress",
+            'draw it straight, or give it rest="straight"',
+        )
+    return part

@@ -1,0 +1,152 @@
+"""Ropes with memory: viscosity beside closed forms, with every integrator that has it.
+
+    python tests/benchmarks/rope_memory.py [--out FILE.csv]
+
+A rope of 10 m without weight, a standard linear solid: stiffness EA for long times, EA + K for short ones. Its end is
+pulled by a force (creep), moved and held (relaxation), and moved harmonically (loss in a cycle).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from funicular import Circle, Harmonic, Material, Ramp, Run, Scene
+from table import arguments, few, show
+
+L, RADIUS = 10.0, 0.005
+EA, K, TAU = 8e4, 3e4, 0.2
+FORCE, SHIFT, BEGIN = 800.0, 0.02, 0.2
+FREQUENCY, CYCLES = 1.5, 6
+"""Hz, and cycles until the last one, which is measured."""
+ROPE = Material(youngs_modulus=EA / (np.pi * RADIUS**2), poisson_ratio=0.3, density=1.0)
+"""So light that its waves take a thousandth of `BEGIN`."""
+RISE = Ramp(start=0.0, end=BEGIN)
+INTEGRATORS = "genalpha", "radau", "explicit", "linear"
+
+
+def rope(element: str = "cable8p", density: float = ROPE.density) -> Scene:
+    """Return the rope, clamped at its start."""
+    scene = Scene(gravity=(0, 0, 0))
+    scene.cable(
+        "rope",
+        start=(0, 0, 0),
+        end=(L, 0, 0),
+        elements=2,
+        element=element,
+        section=Circle(radius=RADIUS),
+        material=ROPE.remade({"density": density}),
+        strain="engineering",
+    )
+    scene.pin("rope", s=0.0)
+    scene.relaxation("rope", stiffness=K, time=TAU, name="viscosity")
+    return scene
+
+
+def pulled(element: str = "cable8p") -> Scene:
+    """Return the rope under a force that rises and stays."""
+    scene = rope(element)
+    scene.force("rope", s=L, value=(FORCE, 0, 0), scale=RISE)
+    return scene
+
+
+def after_rise(kernel: Callable[[np.ndarray], np.ndarray], time: np.ndarray) -> np.ndarray:
+    """Return (T,): the integral of kernel(t - s) times the rate of `RISE` at s, by Gauss's rule, with s the times of
+    the rise up to t.
+    """
+    places, weights = np.polynomial.legendre.leggauss(40)
+    end = np.minimum(time, BEGIN)[:, None]
+    s = end * (1 + places) / 2
+    x = s / BEGIN
+    return np.sum(kernel(time[:, None] - s) * 30 * x**2 * (1 - x) ** 2 / BEGIN * end / 2 * weights, axis=1)
+
+
+def creep(time: np.ndarray) -> np.ndarray:
+    """Return the displacement (T,) of the end of the pulled rope, m, by its creep compliance."""
+    retardation = TAU * (EA + K) / EA
+    return FORCE * L * after_rise(lambda t: 1 / EA - K / (EA * (EA + K)) * np.exp(-t / retardation), time)
+
+
+def moved(element: str = "cable8p") -> Scene:
+    """Return the rope whose end moves and stays."""
+    scene = rope(element)
+    scene.motion("rope", s=L, displacement=(Ramp(before=0, after=SHIFT, start=0, end=BEGIN), *[0, 0]))
+    return scene
+
+
+def relaxation(time: np.ndarray) -> np.ndarray:
+    """Return the tension (T,) of the spring of the moved rope, N."""
+    return K * SHIFT / L * after_rise(lambda t: np.exp(-t / TAU), time)
+
+
+def shaken(element: str = "cable8p") -> Scene:
+    """Return the rope whose end moves harmonically."""
+    scene = rope(element)
+    scene.motion(
+        "rope", s=L, displacement=(Harmonic(amplitude=-SHIFT, frequency=FREQUENCY, phase=np.pi / 2, offset=SHIFT), 0, 0)
+    )
+    return scene
+
+
+def loss() -> float:
+    """Return the energy that the shaken rope takes in a cycle, J, by its loss modulus."""
+    x = 2 * np.pi * FREQUENCY * TAU
+    return np.pi * SHIFT**2 / L * K * x / (1 + x**2)
+
+
+def lost(run: Run) -> float:
+    """Return the energy that the shaken rope takes in the last cycle of a run, J."""
+    dissipated = np.interp([(CYCLES - 1) / FREQUENCY, CYCLES / FREQUENCY], run.time, run["energy.dissipated"])
+    return float(np.diff(dissipated)[0])
+
+
+def displacement(run: Run) -> np.ndarray:
+    """Return the displacement (T,) of the end of a rope, m."""
+    return run["rope.nodal_vectors"][:, -1, 0, 0] - L
+
+
+VISCOUS = {
+    "creep": (pulled, displacement, creep, "displacement, m"),
+    "relaxation": (moved, lambda run: run["viscosity.tension"].mean(axis=1), relaxation, "tension, N"),
+}
+
+
+def of_viscosity(case: str, integrator: str, tol: float = 1e-7) -> dict:
+    """Return the row of creep or relaxation: the largest error over time."""
+    scene, result, closed_form, quantity = VISCOUS[case]
+    run = scene().run(3.0, output_step=0.05, integrator=integrator, tol=tol)
+    found, exact = result(run), closed_form(run.time)
+    at = np.argmax(np.abs(found - exact))
+    return row(case, integrator, quantity, found[at], exact[at], np.abs(exact).max(), run)
+
+
+def of_loss(integrator: str, tol: float = 1e-7) -> dict:
+    """Return the row of the loss in a cycle."""
+    run = shaken().run(CYCLES / FREQUENCY, output_step=1 / (20 * FREQUENCY), integrator=integrator, tol=tol)
+    return row("harmonic", integrator, "loss in a cycle, J", lost(run), loss(), loss(), run)
+
+
+def row(case: str, integrator: str, quantity: str, found: float, exact: float, size: float, run: Run) -> dict:
+    """Return a row with the error over the size of the quantity, and that of the energies over the work."""
+    energies = run["energy.kinetic"] + run["energy.elastic"] + run["energy.dissipated"] - run["energy.external"]
+    return {
+        "case": case,
+        "integrator": integrator,
+        "quantity": quantity,
+        "found": float(found),
+        "reference": float(exact),
+        "error": float(abs(found - exact) / size),
+        "energy": float(np.ptp(energies) / np.abs(run["energy.external"]).max()),
+        "steps": run.report["steps"],
+    }
+
+
+def main() -> None:
+    """Measure and print."""
+    options = arguments(__doc__)
+    cases = [lambda i, c=case: of_viscosity(c, i) for case in VISCOUS] + [of_loss]
+    show([case(integrator) for case in few(cases) for integrator in few(INTEGRATORS)], options.out)
+
+
+if __name__ == "__main__":
+    main()
