@@ -1207,15 +1207,16 @@ fu_joint_force_kernel joint_revolute_angle_force, joint_prismatic_distance_force
 /* gap 3, A1 3x3, A2 3x3, c 3, f 4, phi 4, J 4x9, K 9x9 */
 fu_joint_force_kernel joint_universal_force, joint_cylindrical_force;
 /* gap 3, A1 3x3, A2 3x3, c 3, f 1, phi 1, J 1x9, K 9x9 */
-fu_joint_force_kernel joint_distance_force;
+fu_joint_force_kernel joint_distance_force, joint_turning_force, joint_sliding_force;
 /* gap 3, A1 3x3, A2 3x3, c 3, f 2, phi 2, J 2x9, K 9x9 */
-fu_joint_force_kernel joint_aligned_force;
+fu_joint_force_kernel joint_aligned_force, joint_turning_sliding_force;
 /* gap 2, A1 2x2, A2 2x2, c 3, f 2, phi 2, J 2x4, K 4x4 */
 fu_joint_force_kernel joint_planar_spherical_force, joint_planar_prismatic_force;
 /* gap 2, A1 2x2, A2 2x2, c 3, f 3, phi 3, J 3x4, K 4x4 */
 fu_joint_force_kernel joint_planar_revolute_angle_force, joint_planar_prismatic_distance_force, joint_planar_weld_force;
 /* gap 2, A1 2x2, A2 2x2, c 3, f 1, phi 1, J 1x4, K 4x4 */
-fu_joint_force_kernel joint_planar_distance_force, joint_planar_locked_force;
+fu_joint_force_kernel joint_planar_distance_force, joint_planar_locked_force, joint_planar_turning_force,
+    joint_planar_sliding_force;
 
 typedef void fu_joint_motion_kernel(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 /* derivatives of the equations in time: gap [m]; A1 [1]; A2 [1]; c [m or rad, 1, 1]; gap_rate [m/s]; omega1 [rad/s];
@@ -1230,16 +1231,17 @@ fu_joint_motion_kernel joint_revolute_angle_motion, joint_prismatic_distance_mot
 /* gap 3, A1 3x3, A2 3x3, c 3, gap_rate 3, omega1 3, omega2 3, c_rate 2, phi_t 4, Q_d 4 */
 fu_joint_motion_kernel joint_universal_motion, joint_cylindrical_motion;
 /* gap 3, A1 3x3, A2 3x3, c 3, gap_rate 3, omega1 3, omega2 3, c_rate 2, phi_t 1, Q_d 1 */
-fu_joint_motion_kernel joint_distance_motion;
+fu_joint_motion_kernel joint_distance_motion, joint_turning_motion, joint_sliding_motion;
 /* gap 3, A1 3x3, A2 3x3, c 3, gap_rate 3, omega1 3, omega2 3, c_rate 2, phi_t 2, Q_d 2 */
-fu_joint_motion_kernel joint_aligned_motion;
+fu_joint_motion_kernel joint_aligned_motion, joint_turning_sliding_motion;
 /* gap 2, A1 2x2, A2 2x2, c 3, gap_rate 2, omega1 1, omega2 1, c_rate 2, phi_t 2, Q_d 2 */
 fu_joint_motion_kernel joint_planar_spherical_motion, joint_planar_prismatic_motion;
 /* gap 2, A1 2x2, A2 2x2, c 3, gap_rate 2, omega1 1, omega2 1, c_rate 2, phi_t 3, Q_d 3 */
 fu_joint_motion_kernel joint_planar_revolute_angle_motion, joint_planar_prismatic_distance_motion,
     joint_planar_weld_motion;
 /* gap 2, A1 2x2, A2 2x2, c 3, gap_rate 2, omega1 1, omega2 1, c_rate 2, phi_t 1, Q_d 1 */
-fu_joint_motion_kernel joint_planar_distance_motion, joint_planar_locked_motion;
+fu_joint_motion_kernel joint_planar_distance_motion, joint_planar_locked_motion, joint_planar_turning_motion,
+    joint_planar_sliding_motion;
 
 typedef void fu_joint_discrete_kernel(const fu_real *gap, const fu_real *gap_next, fu_real *J);
 /* Jacobian of the equations over a step that conserves energy: gap [m]; gap_next [m] -> J [1] */

@@ -256,6 +256,9 @@ static const fu_joint_kernels joints[] = {
     {"joint_distance", 3, 1, joint_distance_force, joint_distance_motion, joint_distance_discrete},
     {"joint_aligned", 3, 2, joint_aligned_force, joint_aligned_motion, 0},
     {"joint_locked", 3, 3, joint_locked_force, joint_locked_motion, 0},
+    {"joint_turning", 3, 1, joint_turning_force, joint_turning_motion, 0},
+    {"joint_sliding", 3, 1, joint_sliding_force, joint_sliding_motion, 0},
+    {"joint_turning_sliding", 3, 2, joint_turning_sliding_force, joint_turning_sliding_motion, 0},
     {"joint_planar_spherical", 2, 2, joint_planar_spherical_force, joint_planar_spherical_motion,
      joint_planar_spherical_discrete},
     {"joint_planar_revolute_angle", 2, 3, joint_planar_revolute_angle_force, joint_planar_revolute_angle_motion, 0},
@@ -266,6 +269,8 @@ static const fu_joint_kernels joints[] = {
     {"joint_planar_distance", 2, 1, joint_planar_distance_force, joint_planar_distance_motion,
      joint_planar_distance_discrete},
     {"joint_planar_locked", 2, 1, joint_planar_locked_force, joint_planar_locked_motion, 0},
+    {"joint_planar_turning", 2, 1, joint_planar_turning_force, joint_planar_turning_motion, 0},
+    {"joint_planar_sliding", 2, 1, joint_planar_sliding_force, joint_planar_sliding_motion, 0},
 };
 
 static const fu_point_law_kernels point_laws[] = {
@@ -1022,6 +1027,12 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(joint_aligned_motion, vvvvvvvv_2) \
     X(joint_locked_force, vvvvv_3) \
     X(joint_locked_motion, vvvvvvvv_2) \
+    X(joint_turning_force, vvvvv_3) \
+    X(joint_turning_motion, vvvvvvvv_2) \
+    X(joint_sliding_force, vvvvv_3) \
+    X(joint_sliding_motion, vvvvvvvv_2) \
+    X(joint_turning_sliding_force, vvvvv_3) \
+    X(joint_turning_sliding_motion, vvvvvvvv_2) \
     X(joint_planar_spherical_force, vvvvv_3) \
     X(joint_planar_spherical_motion, vvvvvvvv_2) \
     X(joint_planar_spherical_discrete, vv_1) \
@@ -1038,6 +1049,10 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(joint_planar_distance_discrete, vv_1) \
     X(joint_planar_locked_force, vvvvv_3) \
     X(joint_planar_locked_motion, vvvvvvvv_2) \
+    X(joint_planar_turning_force, vvvvv_3) \
+    X(joint_planar_turning_motion, vvvvvvvv_2) \
+    X(joint_planar_sliding_force, vvvvv_3) \
+    X(joint_planar_sliding_motion, vvvvvvvv_2) \
     X(spring_energy, vv_1) \
     X(spring_dissipation, vvv_1) \
     X(spring_force, vvv_1) \
@@ -1256,7 +1271,7 @@ const fu_tables fu_all = {
     2, crossings,
     2, drags,
     2, frames,
-    20, joints,
+    25, joints,
     6, point_laws,
     2, resistances,
     2, rope_points,

@@ -16,7 +16,7 @@ import funicular as fu
 import numpy as np
 from funicular.kernels.elements import built_in
 from funicular.parts.cable_laws import possible_laws
-from funicular.parts.joint import DRIVEN
+from funicular.parts.joint import DRIVEN, ROUGH_KINDS
 from funicular.parts.joint import JOINT_KINDS as JOINTS
 
 TIME = 0.02
@@ -181,6 +181,14 @@ AXES = {"revolute": {"axis": (0, 0, 1)}, "universal": {"axis": (0, 0, 1), "secon
         "prismatic": {"axis": (0, 1, 0)}, "cylindrical": {"axis": (0, 1, 0)}}
 
 
+def _rough_joint(on: Site, kind: str, **given) -> None:
+    """Join a body below the cable to the ground by a joint with friction."""
+    place = tuple(on.below(0.6, 0.2))
+    on.held("J", place)
+    on.scene.joint(kind, place, "J", **AXES[kind], friction=fu.Friction(coefficient=0.2, velocity=0.01), name="joint",
+                   **{} if kind == "prismatic" else {"radius": 0.02}, **given)
+
+
 def _joint(on: Site, kind: str, driven: bool) -> None:
     """Join a body below the cable to it, or, if driven, to the ground."""
     place, above = tuple(on.below(0.6, 0.2)), tuple(on.below(0.6, 0))
@@ -197,6 +205,8 @@ def _joint(on: Site, kind: str, driven: bool) -> None:
 JOINED: dict[str, Callable[[Site], object]] = {
     "none": lambda on: None,
     **{kind: partial(_joint, kind=kind, driven=False) for kind in JOINTS},
+    **{f"rough {kind}": partial(_rough_joint, kind=kind) for kind in ROUGH_KINDS},
+    "brake": partial(_rough_joint, kind="revolute", normal_force=5.0),
     **{f"driven {kind}": partial(_joint, kind=kind, driven=True) for kind in DRIVEN}}
 
 

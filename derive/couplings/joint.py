@@ -92,15 +92,21 @@ JOINTS = {3: {"spherical": [_meet],
               "weld": [_meet, _LOCK],
               "distance": [_distant],
               "aligned": [_AXIS],
-              "locked": [_LOCK]},
+              "locked": [_LOCK],
+              "turning": [_turned],
+              "sliding": [_moved("z")],
+              "turning_sliding": [_turned, _moved("z")]},
           2: {"planar_spherical": [_meet],
               "planar_revolute_angle": [_meet, _turned],
               "planar_prismatic": [_offset("y"), _across("yx")],
               "planar_prismatic_distance": [_offset("y"), _across("yx"), _moved("x")],
               "planar_weld": [_meet, _across("yx")],
               "planar_distance": [_distant],
-              "planar_locked": [_across("yx")]}}
-"""The equations of each joint, by dimension; aligned and locked, beside a slide, constrain axes alone."""
+              "planar_locked": [_across("yx")],
+              "planar_turning": [_turned],
+              "planar_sliding": [_moved("x")]}}
+"""The equations of each joint, by dimension; aligned and locked, beside a slide, constrain axes alone; turning and
+sliding are motions that a joint leaves free, against which friction acts."""
 
 
 def rows(dim: int, name: str) -> int:

@@ -30,6 +30,7 @@ def placed_joint(scene: SceneData, joint: Joint) -> Joint:
     if move_as_one(scene, joint.a, joint.b):
         raise SceneError(joint.where, f"joins {called(scene, joint.a)} to itself", "give it two ends")
     _check_on_ropes(scene, joint)
+    _check_friction(scene, joint)
     joint = joint.completed(_completed(scene, joint))
     _check_frames(scene, joint)
     check_other_joints(scene, joint, lambda: LENGTH_TOLERANCE * scene_size(scene, joint))
@@ -48,6 +49,14 @@ def _check_on_ropes(scene: SceneData, joint: Joint) -> None:
         driven = "driven " * joint.is_driven
         raise SceneError(joint.where, f'a {driven}{joint.joint_kind} joint needs axes, and rope "{held.name}" has none',
                          'take kind="spherical" or "distance"')
+
+
+def _check_friction(scene: SceneData, joint: Joint) -> None:
+    """Raise SceneError for friction of a joint on a cable or a rope."""
+    for end in (joint.a, joint.b):
+        if joint.friction is not None and end.on is not None and scene.line(end.on) is not None:
+            raise SceneError(joint.where, f'has friction, but "{end.on}" is no body',
+                             "join it to a small body, and that to the cable by another joint")
 
 
 def check_joint(scene: SceneData, joint: Joint) -> None:

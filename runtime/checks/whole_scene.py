@@ -12,6 +12,7 @@ from ..kernels.elements import built_in
 from ..parts.cable import Cable
 from ..parts.friction import Friction
 from ..parts.in_plane import turned_alone
+from ..parts.joint import Joint
 from ..parts.load import Load
 from ..parts.modal_body import ModalBody
 from ..parts.part import Part
@@ -19,6 +20,7 @@ from ..parts.plane import aligned, called
 from ..parts.rope import Rope
 from ..parts.scene_data import SceneData
 from ..parts.signal import Signal, signals_of
+from ..parts.slide import Slide
 from ..parts.validation import LENGTH_TOLERANCE, show
 from .joint_placement import check_drive, check_joint
 from .placement import check_grips
@@ -71,7 +73,8 @@ def check_scene(scene: SceneData) -> None:
 def _check_events(scene: SceneData) -> None:
     """Raise SceneError for loads and friction that begin or end with an event which is not there, or ends the run."""
     waiting: list[tuple[str, Load | Friction]] = [(load.where, load) for load in scene.loads.values()]
-    waiting += [(slide.where, slide.friction) for slide in scene.slides.values() if slide.friction is not None]
+    rubbing: list[Slide | Joint] = [*scene.slides.values(), *scene.joints.values()]
+    waiting += [(part.where, part.friction) for part in rubbing if part.friction is not None]
     for where, part in waiting:
         for keyword, name in (("when", part.when), ("until", part.until)):
             if name is not None and name not in scene.events:
@@ -107,6 +110,10 @@ def check_comes_to_rest(scene: SceneData) -> None:
         if slide.friction is not None and not slide.friction.sticks and slide.friction.sliding > 0:
             raise SceneError(slide.where, "its friction is regularised, so that a rider creeps and never comes to rest",
                              'take model="stick", which holds it, or leave friction out')
+    for joint in scene.joints.values():
+        if joint.friction is not None and joint.friction.coefficient:
+            raise SceneError(joint.where, "its friction is regularised, so that it creeps and never comes to rest",
+                             "leave friction out")
     for contact in scene.contacts.values():
         if contact.a in scene.ropes and contact.friction_coefficient:
             why = ("its friction has no part in a state of rest: springs along a rope begin a motion without stretch"

@@ -13,6 +13,7 @@ from ..base.deferred import dataclass
 from ..checks.frames import draws_section
 from ..parts.attachment import Attachment
 from ..parts.cable import Cable
+from ..parts.joint import Joint
 from ..parts.modal_body import ModalBody
 from ..parts.rigid_body import largest_moment
 from ..parts.scene_data import SceneData
@@ -69,7 +70,8 @@ class AttachmentModel:
 class ModelBuilder:
     """Makes attachments, hulls of cables and signals for the couplings of a model.
 
-    cables, ropes, bodies: the models, in the scene's order; driven: dofs of `DrivenDofs`, by part and quantity.
+    cables, ropes, bodies: the models, in the scene's order; driven: dofs of `DrivenDofs`, by part and quantity; joints:
+    those of the scene with their models, once these are made.
     """
 
     def __init__(self, scene: SceneData, cables: list[Any], ropes: list[Any], bodies: list[Any],
@@ -79,6 +81,7 @@ class ModelBuilder:
         self.cables, self.ropes, self.bodies = cables, ropes, bodies
         self.cable_index = {name: k for k, name in enumerate(scene.cables)}
         self.body_index = {name: k for k, name in enumerate(scene.bodies)}
+        self.joints: list[tuple[Joint, Any]] = []
         self.signals = Signals()
         self.hulls: dict[int, Hull] = {}
         self._made: dict[Hashable, Any] = {}

@@ -12,6 +12,7 @@ from ..base.deferred import dataclass
 from ..checks.frames import TANGENT_LAST, has_section, joint_axes, slide_axes
 from ..kernels.libraries import kernels_of
 from ..parts.cable import Cable
+from ..parts.friction import Friction
 from ..parts.joint import DRIVEN, Joint
 from ..parts.locations import point_of
 from ..parts.slide import Slide
@@ -47,6 +48,10 @@ class JointModel(CouplingModel):
         """Return the number of its equations."""
         return len(self.scale)
 
+    def moves_points(self, dim: int) -> list[bool]:
+        """Return for each equation whether it depends on the gap between both points."""
+        return [bool(each) for each in np.any(_derivatives(self.kernel, dim)[:, :dim] != 0, axis=1)]
+
     def ties_ends(self, dim: int) -> bool:
         """Return whether its stiffness couples both ends: its forces depend on rotations of both, or on the gap.
 
@@ -67,7 +72,9 @@ def joint_models(builder: ModelBuilder) -> Iterator[JointModel]:
         if slide.frame != "point":
             yield _frame_joint(builder, slide, k)
     for joint in builder.scene.joints.values():
-        yield _joint(builder, joint)
+        model = _joint(builder, joint)
+        builder.joints.append((joint, model))
+        yield model
     for cable in builder.scene.cables.values():
         if not cable.kind_of_element.director:
             yield from (_joint_of_tangents(builder, cable, element) for element in cable.mesh.doubled
@@ -151,4 +158,55 @@ def _has_cross_stiffness(kernel: str, dim: int) -> bool:
     return bool(np.any(first[:, second] != 0))
 
 
-KINDS = (CouplingKind("joint", Joint.group, joint_models),)
+@dataclass(eq=False, repr=False)
+class JointFrictionModel(CouplingModel):
+    """Friction of a joint against the motions that it leaves free.
+
+    arms: from the rates of these motions to the speed of sliding, m or 1. of: the joint, whose force presses unless
+    there is a normal force, N; friction_scale: number of the signal of a factor of both coefficients, or -1.
+    """
+
+    keeps_forces: ClassVar[bool] = False
+    kernel: str
+    attachments: tuple[AttachmentModel, AttachmentModel]
+    of: JointModel
+    arms: tuple[float, float]
+    normal_force: float
+    coefficient: float
+    viscous: float
+    velocity: float
+    friction_scale: int
+    is_free: bool = True
+
+    @property
+    def pressed_by(self) -> int:
+        """Return the number of the joint whose force presses, or -1 for a given normal force."""
+        return self.of.number if self.needs_reactions else -1
+
+    def ties_ends(self, dim: int) -> bool:
+        """Return True: its moment turns with one end."""
+        return True
+
+
+def friction_models(builder: ModelBuilder) -> Iterator[JointFrictionModel]:
+    """Yield the friction of the joints of the scene, whose models the builder has."""
+    for joint, of in builder.joints:
+        if joint.friction is not None:
+            yield _friction(builder, joint, of, joint.friction)
+
+
+def _friction(builder: ModelBuilder, joint: Joint, of: JointModel, friction: Friction) -> JointFrictionModel:
+    dim = builder.scene.dim
+    kind = {"revolute": "turning", "prismatic": "sliding", "cylindrical": "turning_sliding"}[joint.joint_kind]
+    if dim == 2 and joint.joint_kind == "cylindrical":
+        kind = "sliding"
+    made = _model(joint.name or "", kind, dim, [*of.attachments], -1, 0.0)
+    number, factor = builder.signals.scale(friction.scale, friction.when, friction.until)
+    return JointFrictionModel(
+        made.kernel, made.attachments, of, (1.0 if kind == "sliding" else joint.radius or 0.0, 1.0),
+        joint.normal_force or 0.0, factor * friction.coefficient, factor * friction.viscous, friction.velocity, number,
+        type="joint_friction", name=made.name, scale=made.scale, follows_law=True, is_damped=True,
+        needs_reactions=joint.normal_force is None and friction.coefficient > 0)
+
+
+KINDS = (CouplingKind("joint", Joint.group, joint_models), CouplingKind("joint_friction", Joint.group, friction_models))

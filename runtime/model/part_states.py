@@ -16,6 +16,7 @@ from ..engine import OUTPUTS, Engine, outputs_by_name
 from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
 from ..parts.support import Support
+from .joints import JointFrictionModel
 from .kinds import COUPLINGS
 from .model import Model
 from .rope_states import coordinates, end_forces, rope_state
@@ -162,9 +163,14 @@ def _slides(model: Model, at: States, kind: str, asked: Asked) -> Values:
 
 
 def _joints(model: Model, at: States, kind: str, asked: Asked) -> Values:
-    """Return the results of the scene's joints, without those that hold the axes of slides."""
-    return {joint.name: joint_state(joint, at.outputs(kind, k)) for k, joint in enumerate(model.joints)
-            if joint.is_of_scene and asked(joint.name)}
+    """Return the results of the scene's joints, without those that hold the axes of slides, and with friction."""
+    found = {joint.name: joint_state(joint, at.outputs(kind, k)) for k, joint in enumerate(model.joints)
+             if joint.is_of_scene and asked(joint.name)}
+    for k, friction in enumerate(model.of(JointFrictionModel)):
+        if (of := found.get(friction.name)) is not None:
+            by = joint_state(friction.of, at.outputs(friction.type, k))
+            of |= {name: of[name] + by[name] for name in ("force", "moment")}
+    return found
 
 
 def _point_forces(model: Model, at: States, kind: str, asked: Asked) -> Values:
@@ -257,7 +263,8 @@ def _none(model: Model, at: States, kind: str, asked: Asked) -> Values:
     return {}
 
 
-RESULTS = {"slide": _slides, "anchor": _ropes, "joint": _joints, "point_force": _point_forces, "drag": _drags,
-           "branch": _branches, "contact": _contacts, "rope contact": _rope_contacts, "hard_contact": _hard_contacts,
+RESULTS = {"slide": _slides, "anchor": _ropes, "joint": _joints, "joint_friction": _none,
+           "point_force": _point_forces, "drag": _drags, "branch": _branches, "contact": _contacts,
+           "rope contact": _rope_contacts, "hard_contact": _hard_contacts,
            "taut_point": _taut_points, "taut_rope": _none}
 """Functions from outputs to results, of the kinds of couplings whose results are not the outputs themselves."""

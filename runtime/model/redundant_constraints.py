@@ -8,7 +8,7 @@ import numpy as np
 
 from ..engine import Engine
 from ..errors import SceneError
-from .joints import JointModel
+from .joints import JointFrictionModel, JointModel
 from .model import Model
 
 REDUNDANT, NEARLY_REDUNDANT = 1e-12, 1e-8
@@ -45,6 +45,7 @@ def drop_redundant_rows(model: Model, engine: Engine) -> list[str]:
     follows = {int(rows[row]): [int(rows[k]) for k in others] for row, others in _following(S).items()}
     if not follows:
         return []
+    _check_friction(model, follows, owner)
     dropped = [_left_out(model, row, others, owner) for row, others in follows.items()]
     for k, row in dropped:
         model.joints[k].redundant_rows.add(row)
@@ -52,6 +53,21 @@ def drop_redundant_rows(model: Model, engine: Engine) -> list[str]:
     _check_that_they_follow(model, engine, dropped,
                             _listed([owner[k] for row in follows for k in (*follows[row], row)]))
     return [_message(model.joints[k], follows, owner) for k in dict.fromkeys(k for k, _ in dropped)]
+
+
+def _check_friction(model: Model, follows: dict[int, list[int]], owner: list[str]) -> None:
+    """Raise SceneError for friction by the force of a joint that others share, so that it is not determined."""
+    shared = {owner[k] for row, others in follows.items() if _has_force(model, row) for k in (row, *others)}
+    for friction in model.of(JointFrictionModel):
+        if friction.needs_reactions and (name := f'joint "{friction.name}"') in shared:
+            raise SceneError(name, "has friction by its force, which other joints share in a way that rigid bodies do "
+                             "not determine", "give its normal_force, or leave out what over-constrains the scene")
+
+
+def _has_force(model: Model, multiplier: int) -> bool:
+    """Return whether a multiplier is a force on the points of a joint, and not a moment alone."""
+    joint = next(each for each in model.joints if 0 <= multiplier - each.multiplier < each.rows)
+    return joint.moves_points(model.dim)[multiplier - joint.multiplier]
 
 
 def _message(joint: JointModel, follows: dict[int, list[int]], owner: list[str]) -> str:

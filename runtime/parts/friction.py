@@ -1,4 +1,4 @@
-"""Friction of slides, contacts, crossings and ropes: Coulomb friction, of slides also viscous and rolling friction."""
+"""Friction of slides, joints, contacts, crossings and ropes: Coulomb's, of slides also viscous and rolling friction."""
 
 from numbers import Real
 from typing import Annotated, Any, Self
@@ -12,7 +12,7 @@ from .validation import Name, not_negative, one_of, positive, show, shown
 
 
 class Friction(Part):
-    """Friction of a slide, a contact, a crossing or a rope on a sheave, from normal force N and speed of sliding.
+    """Friction of a slide, joint, contact, crossing or rope on a sheave, from normal force N and speed of sliding.
 
     A number in its place is the coefficient. Slides and ropes find the instants at which they stick and break loose as
     events. In contacts and crossings a spring holds sticking points, and slides where its force exceeds friction.
@@ -21,15 +21,15 @@ class Friction(Part):
 
     coefficient: of sliding, Coulomb's
     static_coefficient: of sticking, of slides alone; by default that of sliding
-    viscous: of slides alone, N s/m
+    viscous: of slides and joints, N s/m
     rolling: coefficient of rolling resistance, of slides alone, a force of rolling N against the motion (for wheels:
         the arm of the resistance over the radius)
     model: "regularised": the force rises smoothly with the speed and permits creep at rest; "stick": it holds at rest.
         By default contacts of cables and bodies with surfaces stick, others are regularised
     velocity: of "regularised", at which the force is 0.7 of its limit, m/s
-    scale: factor of all coefficients over time, a signal, of slides alone: a brake
-    when, until: of slides alone, names of the events that friction begins and ends with; ``scale`` counts its time from
-        the first one
+    scale: factor of all coefficients over time, a signal, of slides and joints: a brake
+    when, until: of slides and joints, names of the events that friction begins and ends with; ``scale`` counts its
+        time from the first one
     """
 
     coefficient: Annotated[float, not_negative()] = 0.0
@@ -76,14 +76,22 @@ class Friction(Part):
         """Return the coefficient of sticking."""
         return self.coefficient if self.static_coefficient is None else self.static_coefficient
 
+    def check_regularised(self) -> None:
+        """Raise ValueError unless it is regularised friction of sliding, the friction of joints."""
+        for name, given in (('model="stick"', self.sticks), ("rolling", self.rolling > 0),
+                            ("static_coefficient", self.static != self.coefficient)):
+            if given:
+                raise ValueError(f"friction has {name}, which joints have not", f"leave {name} out")
+
     def check_coulomb(self) -> None:
         """Raise ValueError unless it is Coulomb friction, the friction of contacts and crossings."""
         if self.scale != ONE or self.when is not None or self.until is not None:
-            raise ValueError("changes with time, which only the friction of slides does",
+            raise ValueError("changes with time, which only the friction of slides and joints does",
                              "leave scale, when and until out")
         for name in ("viscous", "rolling"):
             if getattr(self, name):
-                raise ValueError(f"has {name} friction, which only slides have", f"leave {name} out")
+                raise ValueError(f"has {name} friction, which only slides {'and joints ' * (name == 'viscous')}have",
+                                 f"leave {name} out")
         if self.static != self.coefficient:
             raise ValueError("has a static_coefficient, which only slides have",
                              "leave static_coefficient out")

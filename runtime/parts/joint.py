@@ -7,6 +7,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from .attachment import AnyAttachment
+from .friction import AnyFriction
 from .part import Part
 from .quantity import all_of_engine
 from .signal import AnySignal, Integral, Signal
@@ -15,6 +16,9 @@ from .validation import Name, Vector, direction, one_of, positive, show
 POINT_KINDS, LINE_KINDS = ("spherical", "revolute", "universal", "weld"), ("prismatic", "cylindrical")
 """Kinds that hold two points together, and kinds that hold a point on a line."""
 JOINT_KINDS = (*POINT_KINDS, *LINE_KINDS, "distance")
+
+ROUGH_KINDS = ("revolute", "prismatic", "cylindrical")
+"""Kinds that may have friction."""
 
 DRIVEN = {"revolute": "angle", "cylindrical": "angle", "prismatic": "distance", "distance": "distance"}
 """The quantity that drives a joint, itself or by its rate."""
@@ -51,6 +55,10 @@ class Joint(Part):
         distance, m
     velocity: rate of the angle or the distance, rad/s or m/s
     length: of a distance joint, m; by default the distance at the start
+    friction: of a revolute, prismatic or cylindrical joint between bodies or of one with the ground, regularised; the
+        joint's force across the axis presses, not its moment
+    radius: of the pin, for friction of revolute and cylindrical joints, m
+    normal_force: presses in the place of the joint's force, as in a brake, N
     """
 
     kind = "joint"
@@ -73,6 +81,9 @@ class Joint(Part):
     distance: AnySignal | None = None
     velocity: AnySignal | None = None
     length: Annotated[float, positive("m")] | None = None
+    friction: AnyFriction | None = None
+    radius: Annotated[float, positive("m")] | None = None
+    normal_force: Annotated[float, positive("N")] | None = None
 
     @model_validator(mode="after")
     def _has_what_it_needs(self) -> "Joint":
@@ -96,6 +107,26 @@ class Joint(Part):
             if abs(cosine) > 1e-6:
                 raise ValueError("axis and second_axis must be perpendicular, got "
                                  f"{np.degrees(np.arccos(np.clip(cosine, -1, 1))):.6g} degrees between them")
+        return self
+
+    @model_validator(mode="after")
+    def _has_friction_that_it_can(self) -> "Joint":
+        needs_radius = self.joint_kind in ("revolute", "cylindrical")
+        if self.friction is None:
+            for name in ("radius", "normal_force"):
+                if getattr(self, name) is not None:
+                    raise ValueError(f"{name} is given, but no friction", "give friction, or leave it out")
+            return self
+        if self.joint_kind not in ROUGH_KINDS:
+            raise ValueError(f"friction is given, but a {self.joint_kind} joint has none",
+                             f"leave it out, or take {' or '.join(ROUGH_KINDS)}")
+        if self.is_driven:
+            raise ValueError("friction is given, but a signal drives the joint", "leave one of the two out")
+        if needs_radius != (self.radius is not None):
+            raise ValueError(f"friction of a {self.joint_kind} joint needs the radius of its pin" if needs_radius else
+                             "radius is given, but a prismatic joint has no pin", *() if needs_radius else
+                             ("leave it out",))
+        self.friction.check_regularised()
         return self
 
     @model_validator(mode="after")

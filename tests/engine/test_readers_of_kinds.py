@@ -90,7 +90,7 @@ SCENE_PLACES = {
 """Places that read a group of couplings of a scene, by what they read; one module a kind in model/ and checks/, and
 applications, know their kinds by definition."""
 OWN_MODULES = ("model/", "checks/", "guides/", "bench/", "cosserat_bench/", "catenary/")
-FRICTION = {"slide", "crossing", "contact"}
+FRICTION = {"slide", "joint", "crossing", "contact"}
 """Kinds of parts with friction, which the places under "friction" know."""
 ALONG_CABLES = {"slide", "crossing", "contact"}
 """Types of couplings that act at places of a cable that move, which the places under "points that move" know; contact

@@ -17,7 +17,8 @@ FREE = {"spherical": "rx ry rz", "revolute": "rz", "revolute_angle": "", "univer
         "cylindrical_angle": "z", "cylindrical_distance": "rz", "prismatic": "z", "prismatic_distance": "", "weld": "",
         "distance": None, "aligned": "x y z rz", "locked": "x y z",
         "planar_spherical": "rz", "planar_revolute_angle": "", "planar_prismatic": "x", "planar_prismatic_distance": "",
-        "planar_weld": "", "planar_distance": None, "planar_locked": "x y"}
+        "planar_weld": "", "planar_distance": None, "planar_locked": "x y", "turning": "x y z rx ry",
+        "sliding": "x y rx ry rz", "turning_sliding": "x y rx ry", "planar_turning": "x y", "planar_sliding": "y rz"}
 
 
 def joint(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
@@ -27,7 +28,7 @@ def joint(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     c = float(s["c"][0])
     A1 = s["A1"]
     axis = "xz"[dim - 2]
-    along, about = name.endswith("_distance"), name.endswith("_angle")
+    along, about = name.endswith(("_distance", "sliding")), name.endswith("_angle") or "turning" in name
     turn = np.array([*[0.0] * (turns - 1), c]) if about else np.zeros(turns)
     A2 = A1 @ turned_axes(np, turn, np.eye(dim))
     if name == "universal":  # z of the first is normal to x of the second already

@@ -372,7 +372,8 @@ cdef extern from * nogil:
         int n[2]
         int **at
         double *K[2][2]
-    void fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, fu_joint_derivatives *out)
+    void fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, const double *multipliers,
+                          fu_joint_derivatives *out)
     int fu_start(fu_run *run)
     int FU_ACCELERATION_JUMPS
     int fu_pass_breakpoint(fu_run *run, const fu_breakpoint *breakpoint, int event)

@@ -274,7 +274,7 @@ cdef class Statics(Translation):
         stiffness = csr_array((whole, whole))
         for k in joints:
             joint = <fu_joint *>self.couplings[k]
-            fu_joint_tangent(&self.model, joint, &self.run.next, &by)
+            fu_joint_tangent(&self.model, joint, &self.run.next, self.run.next.forces + joint.base.force, &by)
             places = [np.array([by.at[e][i] for i in range(by.n[e])]) for e in range(2)]
             for e in range(2):
                 block = np.array([by.K[1 - e][e][i] for i in range(by.n[0] * by.n[1])]).reshape(by.n[1 - e], by.n[e])

@@ -9,6 +9,7 @@
     ALONE(line_load)                                                                                                   \
     WITH_EVENTS(slide)                                                                                                 \
     ALONE(joint)                                                                                                       \
+    ALONE(joint_friction)                                                                                              \
     ALONE(anchor)                                                                                                      \
     WITH_EVENTS(span)                                                                                                  \
     WITH_EVENTS(sheave)                                                                                                \

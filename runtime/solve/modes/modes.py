@@ -178,11 +178,13 @@ def _fewer(model: Model) -> str:
 def _without_friction(scene: SceneData, stick: bool) -> list[str]:
     """Return messages on friction that is left out, and on sheaves to which ropes stick."""
     slides = [f'"{slide.name}"' for slide in scene.slides.values() if slide.friction and not slide.is_driven]
+    joints = [f'"{joint.name}"' for joint in scene.joints.values() if joint.friction]
     wraps = rough_sheaves(scene.ropes.values())
     contacts = [f'"{contact.name}"' for contact in scene.contacts.values()
                 if contact.a in scene.ropes and contact.friction_coefficient]
     return [f"modes {do} {what}{'s' * (len(names) > 1)} {', '.join(names)}"
             for do, what, names in (("leave out the friction of", "slide", slides),
+                                    ("leave out the friction of", "joint", joints),
                                     ("leave out the friction of", "contact", contacts),
                                     ("have ropes that stick to" if stick else "leave out the friction of", "sheave",
                                      wraps)) if names]

@@ -16,6 +16,7 @@ from ...integrators import AUTO, INTEGRATORS, Demands, Explicit, Integrator, Rad
 from ...kernels.libraries import of_library
 from ...model.model import Model
 from ...model.taut_ropes import TautPointModel
+from ...parts.joint import Joint
 from ...parts.rope import rough_sheaves
 from ...parts.rope_items import Sheave
 from ...parts.scene_data import SceneData
@@ -191,8 +192,9 @@ def end_with_low_order(demands: Demands, duration: float, method: Integrator, wh
 def demands_of(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> Demands:
     """Return the demands of a scene on an integrator."""
     frequency, decay = fastest_rates(model, engine)
-    decay = max(decay, *(regularised_decay(scene, slide) for slide in scene.slides.values()), 0.0)
-    friction = any(slide.friction is not None and slide.friction.sliding for slide in scene.slides.values()) or any(
+    rubbing: list[Slide | Joint] = [*scene.slides.values(), *scene.joints.values()]
+    decay = max(decay, *(regularised_decay(scene, part) for part in rubbing), 0.0)
+    friction = any(part.friction is not None and part.friction.sliding for part in rubbing) or any(
         contact.is_hard and contact.friction_coefficient for contact in scene.contacts.values()) or any(
         rough_sheaves(scene.ropes.values()))
     return Demands(frequency, decay, slowest_rate(scene, model, settings.duration), friction, settings.tol)
@@ -210,6 +212,10 @@ def check(integrator: Integrator, scene: SceneData, model: Model, engine: Engine
             break
         if slide.friction is not None or (slide.at_start, slide.at_end) != ("error", "error"):
             raise SceneError(slide.where, f"{who} supports neither friction nor ends of cables",
+                             _take_another("takes_friction_and_stops"))
+    for joint in scene.joints.values():
+        if joint.friction is not None and not integrator.takes_friction_and_stops:
+            raise SceneError(joint.where, f"{who} does not support friction of joints",
                              _take_another("takes_friction_and_stops"))
     for crossing in scene.crossings.values():
         if integrator.needs_discrete_gradient and crossing.friction is not None and crossing.friction.sticks:
@@ -274,13 +280,17 @@ def _check_gradients(integrator: Integrator, scene: SceneData, model: Model, eng
         raise SceneError(part.where, f"{who} has no discrete gradient of it", "take another integrator")
 
 
-def regularised_decay(scene: SceneData, slide: Slide) -> float:
-    """Return the rate in 1/s at which a slow rider under its weight approaches the creep speed of regularised friction.
+def regularised_decay(scene: SceneData, part: Slide | Joint) -> float:
+    """Return the rate in 1/s at which a slow rider under its weight, or the lighter body of a joint under its normal
+    force, approaches the creep speed of regularised friction.
     """
-    friction = slide.friction
-    if friction is None or friction.sticks or slide.is_driven:
+    friction = part.friction
+    if friction is None or friction.sticks or part.is_driven:
         return 0.0
-    return friction.sliding * float(np.linalg.norm(scene.gravity)) / friction.velocity
+    pressed = float(np.linalg.norm(scene.gravity))
+    if isinstance(part, Joint) and part.normal_force is not None:
+        pressed = part.normal_force / min(scene.bodies[end.on].mass for end in (part.a, part.b) if end.on is not None)
+    return friction.sliding * pressed / friction.velocity
 
 
 def slowest_rate(scene: SceneData, model: Model, duration: float) -> float:

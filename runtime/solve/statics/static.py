@@ -143,6 +143,7 @@ def note(problem: StaticProblem, state: RestState) -> None:
     """Complete a state's messages; what a user must know is a warning, too."""
     scene = problem.scene
     for parts, what in (([f'"{name}"' for name, slide in scene.slides.items() if slide.friction is not None], "slides"),
+                        ([f'"{name}"' for name, joint in scene.joints.items() if joint.friction is not None], "joints"),
                         ([contact.where for contact in scene.contacts.values()
                           if contact.friction_coefficient and not (
                               contact.has_friction_spring and contact.a not in scene.ropes)], "contacts"),

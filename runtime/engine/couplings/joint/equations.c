@@ -25,6 +25,19 @@ typedef struct {
 
 static const double nil[9] = {0.0};
 
+/* Computes the cosine and the sine of the angle of the second frame, from x of the first towards y. */
+static void find_angle(int dim, joint_view *view)
+{
+    double cosine = 0.0, sine = 0.0;
+    for (int d = 0; d < dim; ++d) {
+        cosine += view->A[0][d * dim] * view->A[1][d * dim];
+        sine += view->A[0][d * dim + 1] * view->A[1][d * dim];
+    }
+    const double size = hypot(cosine, sine);
+    view->c[1] = size > 0.0 ? cosine / size : 1.0;
+    view->c[2] = size > 0.0 ? sine / size : 0.0;
+}
+
 /* Computes the arguments of a joint at a state; s_rate: of the slides at its ends, null without velocities. */
 static void look(const fu_model *model, const fu_joint *joint, const fu_state *state, const double s_rate[2],
                  joint_view *view)
@@ -45,6 +58,7 @@ static void look(const fu_model *model, const fu_joint *joint, const fu_state *s
     const int is_turned = view->c[0] != 0.0; /* most joints have no angle */
     view->c[1] = is_turned ? cos(view->c[0]) : 1.0;
     view->c[2] = is_turned ? sin(view->c[0]) : 0.0;
+    if (joint->is_free) find_angle(dim, view);
 }
 
 /* Adds a value times a row of n numbers to another. */
@@ -133,12 +147,12 @@ static void add_elastic(int dim, const joint_view *view, int f, int n_e, const d
 }
 
 /* Computes a joint's derivatives at a state. */
-void fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, fu_joint_derivatives *out)
+void fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, const double *multipliers,
+                      fu_joint_derivatives *out)
 {
     const int rows = joint->kernel->rows, dim = model->dim;
     double phi[6], by_moves[6 * MAX_MOVES], of_moves[MAX_MOVES * MAX_MOVES],
         g[MAX_MOVES] = {0.0}, half[MAX_MOVES * FU_ATTACHMENT_COORDINATES];
-    const double *multipliers = state->forces + joint->base.force;
     joint_view view;
     look(model, joint, state, 0, &view);
     joint->kernel->force(view.gap, view.A[0], view.A[1], view.c, multipliers, phi, by_moves, of_moves);

@@ -64,7 +64,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
         unit_rows(model, joint, ~0, w.inertia, system);
         return;
     }
-    fu_joint_tangent(model, joint, equations->next, &by);
+    fu_joint_tangent(model, joint, equations->next, equations->next->forces + coupling->force, &by);
     unit_rows(model, joint, joint->redundant_rows, w.inertia, system);
     for (int r = 0; r < rows; ++r) at[r] = fu_extra(model, coupling->unknown) + r;
     const fu_side internal = {rows, at, 1};

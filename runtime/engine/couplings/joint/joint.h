@@ -14,11 +14,24 @@ typedef struct {
     int signal;
     int of_points;      /* its equations contain the two points alone, without rotations */
     int redundant_rows; /* bits of rows that depend on other joints' rows: their multipliers are zero */
+    int is_free;        /* they are motions that a joint leaves free: the angle is that of the state */
     double c0;          /* m or rad: c without the signal */
 } fu_joint;
 extern const fu_coupling_type fu_joint_type;
 
-/* A joint's numbers in a row of output. */
+/* Friction of a joint, couplings/joint/friction.c, against the motions that it leaves free. Each has an arm, from its
+ * rate to the speed of sliding: m for a rotation, 1 for a displacement. The normal force is that of the joint, a
+ * coupling of this number, or the given one, N, for -1. */
+typedef struct {
+    fu_joint free; /* the free motions as equations; as many internal forces, of friction */
+    int pressed_by;
+    double normal_force, arms[2];
+    double coefficient, viscous, velocity; /* 1, N s/m, m/s */
+    int scale;                             /* signal of a factor of both, -1 */
+} fu_joint_friction;
+extern const fu_coupling_type fu_joint_friction_type;
+
+/* The numbers of a joint, and of its friction, in a row of output. */
 typedef struct {
     double force[3], moment[3], residual; /* on the second attachment, at its point; the largest of phi */
 } fu_joint_output;
@@ -40,7 +53,9 @@ typedef struct {
 int fu_joint_is_inactive(const fu_model *model, const fu_joint *joint, const fu_state *state);
 void fu_joint_equations(const fu_model *model, const fu_joint *joint, const fu_state *state, fu_joint_rows_at *out);
 void fu_joint_rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work);
-void fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, fu_joint_derivatives *out);
+/* The multipliers are those whose forces J' multipliers are differentiated. */
+void fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, const double *multipliers,
+                      fu_joint_derivatives *out);
 void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_state *state, const double *multipliers,
                       fu_joint_output *out);
 int fu_joint_moves(const fu_model *model, const fu_joint *joint, const fu_state *state, int at);
