@@ -1,8 +1,8 @@
 """Paths into a scene, such as ``wire.material.youngs_modulus`` or ``run.tol``, and scenes with other values there.
 
 A path begins with the name of a part (of a pin, clamp or motion its name in results, ``wire@0``), or with ``gravity``,
-``run`` or ``equilibrium``; then come entries as a scene file names them. ``x``, ``y``, ``z`` are components of vectors,
-and numbers, from 0, are entries of lists.
+``run`` or ``equilibrium``, or is ``temperature``; then come entries as a scene file names them. ``x``, ``y``, ``z`` are
+components of vectors, and numbers, from 0, are entries of lists.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ from ..base.deferred import dataclass
 from ..errors import SceneError, near
 from .part import Part
 from .scene_data import SceneData
-from .scene_text import SETTINGS, plain_data
+from .scene_text import OF_ALL, SETTINGS, plain_data
 from .validation import show, shown
 
 COMPONENTS = {"x": 0, "y": 1, "z": 2}
-GRAVITY = "gravity"
+GRAVITY, TEMPERATURE = OF_ALL
 
 
 @dataclass(frozen=True)
 class Path:
     """A path: its head, the entries after it, and the number of its part in the order of the scene.
 
-    part: None for gravity and settings; use: purpose of the path in messages, such as "sweep".
+    part: None for gravity, temperature and settings; use: purpose of the path in messages, such as "sweep".
     """
 
     text: str
@@ -50,7 +50,7 @@ def label_of(part: Part) -> str | None:
 def path_of(scene: SceneData, text: str, use: str = "sweep") -> Path:
     """Return the path of a text in a scene; use: see `Path`. Raises SceneError for an unknown path."""
     where = f'{use} of "{text}"'
-    heads: dict[str, int | None] = {GRAVITY: None, **dict.fromkeys(SETTINGS)}
+    heads: dict[str, int | None] = dict.fromkeys((*OF_ALL, *SETTINGS))
     labels = {label: k for k, part in enumerate(scene.parts()) if (label := label_of(part)) is not None}
     head = max((name for name in (*heads, *labels) if text == name or text.startswith(f"{name}.")), key=len, default="")
     if not head:
@@ -69,6 +69,9 @@ def path_of(scene: SceneData, text: str, use: str = "sweep") -> Path:
 
 def _check_entry(scene: SceneData, path: Path) -> None:
     """Raise SceneError for a path whose part has no such entry."""
+    if path.head == TEMPERATURE and path.part is None:
+        _check_end(path, 0)
+        return
     if path.head == GRAVITY:
         known: Iterable[str] = COMPONENTS
     elif path.part is None:
@@ -112,7 +115,7 @@ class Variants(Generic[S]):
     def __init__(self, scene: S, paths: Iterable[Path]):
         """paths: of `path_of`. Raises SceneError."""
         self._scene, self._parts = scene, [*scene.parts()]
-        changing = [0 if path.head == GRAVITY else path.part for path in paths]
+        changing = [0 if path.head in OF_ALL else path.part for path in paths]
         self._first = min((number for number in changing if number is not None), default=len(self._parts))
         self._begun = scene.with_parts(self._parts[:self._first]) if self._first else None
 
@@ -121,12 +124,13 @@ class Variants(Generic[S]):
         scene, first = self._scene, self._first
         settings: dict[str, dict[str, Any]] = {name: {} for name in SETTINGS}
         for path, value in values.items():
-            if path.part is None and path.head != GRAVITY:
+            if path.part is None and path.head not in OF_ALL:
                 settings[path.head][path.entries[0]] = value
                 _check_end(path, 1)
         changes, gravity = changes_of(scene, values), gravity_of(scene, values)
         parts = (part.remade(changes[k]) if k in changes else part for k, part in enumerate(self._parts[first:], first))
-        made = scene.with_parts(parts, gravity, self._begun)
+        temperature = next((value for path, value in values.items() if path.head == TEMPERATURE), None)
+        made = scene.with_parts(parts, gravity, self._begun, temperature)
         for name, table in settings.items():
             if table:
                 setattr(made, f"{name}_settings", getattr(scene, f"{name}_settings") | table)
@@ -161,6 +165,8 @@ def value_at(scene: SceneData, path: Path) -> Any:
 
     Raises SceneError for entries of a component of gravity.
     """
+    if path.part is None and path.head == TEMPERATURE:
+        return plain_data(scene.temperature)
     if path.part is None and path.head != GRAVITY:
         return None
     if path.part is None:
@@ -211,8 +217,8 @@ def _check_end(path: Path, at: int, data: Any = None) -> None:
 
 def unit_of(scene: SceneData, path: Path) -> str:
     """Return the unit of the value at a path in a scene, empty for a number without unit."""
-    if path.head == GRAVITY:
-        return "m/s²"
+    if path.part is None and path.head in OF_ALL:
+        return "K" if path.head == TEMPERATURE else "m/s²"
     kind, entries = SETTINGS.get(path.head), list(path.entries)
     if path.part is not None:
         part = [*scene.parts()][path.part]

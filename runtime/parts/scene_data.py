@@ -281,16 +281,18 @@ class SceneData:
         """Add the parts of many pairs, see `pairs` and `funicular.Scene`."""
         raise NotImplementedError
 
-    def with_parts(self, parts: Iterable[Part], gravity: Any = None, begun: Self | None = None) -> Self:
+    def with_parts(self, parts: Iterable[Part], gravity: Any = None, begun: Self | None = None,
+                   temperature: Any = None) -> Self:
         """Return a checked scene of other parts, with the settings and the title of this one.
 
         parts: in the order of `parts`; gravity: in m/s², by default unchanged; begun: a scene that such a call made of
-        the parts before these, which stays. Raises SceneError.
+        the parts before these, which stays; temperature: in K, by default unchanged. Raises SceneError.
         """
         if begun is not None:
             scene = begun.copied()
         else:
-            scene = type(self)(gravity=self.gravity if gravity is None else gravity, temperature=self.temperature)
+            scene = type(self)(gravity=self.gravity if gravity is None else gravity,
+                                temperature=self.temperature if temperature is None else temperature)
             scene.title = self.title
             scene.run_settings, scene.equilibrium_settings = dict(self.run_settings), dict(self.equilibrium_settings)
             scene.relax_settings = dict(self.relax_settings)

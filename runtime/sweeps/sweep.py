@@ -125,13 +125,13 @@ def sweep(subject: Scene | Callable[..., Any], parameters: Mapping[str, Any], *,
           on_cost: Callable[[SweepCost], None] | None = None, **settings: Any) -> xarray.Dataset:
     """Run a scene, or call a function, at many points of its parameters; return one labelled xarray.Dataset.
 
-    subject: a scene, whose parameters are paths such as "wire.material.youngs_modulus", "A.velocity.x", "gravity.y" or
-    "run.tol"; or a function that takes the parameters as keywords and returns a Scene, a Run, or a dict of numbers and
-    arrays. parameters: lists of values for ``method="grid"`` (all combinations) and "list" (the first values of all,
-    the second ones, ...); distributions (`Uniform`, `LogUniform`, or of scipy.stats) for "random" and "latin" (Latin
-    hypercube), of which ``samples`` points are drawn with ``seed``. keep: names of results, with ".x", ".y" or ".z" for
-    a component; or a dict from names to such names, or to functions of the run that return a number or an array.
-    settings: of the runs, as `Scene.run` takes them.
+    subject: a scene, whose parameters are paths such as "wire.material.youngs_modulus", "A.velocity.x", "gravity.y",
+    "temperature" or "run.tol"; or a function that takes the parameters as keywords and returns a Scene, a Run, or a
+    dict of numbers and arrays. parameters: lists of values for ``method="grid"`` (all combinations) and "list" (the
+    first values of all, the second ones, ...); distributions (`Uniform`, `LogUniform`, or of scipy.stats) for "random"
+    and "latin" (Latin hypercube), of which ``samples`` points are drawn with ``seed``. keep: names of results, with
+    ".x", ".y" or ".z" for a component; or a dict from names to such names, or to functions of the run that return a
+    number or an array. settings: of the runs, as `Scene.run` takes them.
 
     save: the netCDF file, written while the sweep runs; the same call resumes a stopped sweep without computing
     finished points again. Without it results are in memory. workers: processes, or for short work with scenes threads,

@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 import pytest
 import scipy.stats
-from funicular import Friction, LogUniform, Scene, SceneError, Uniform, load_scene
+from funicular import Circle, Friction, LogUniform, Material, Scene, SceneError, Uniform, load_scene
 from funicular.cli.sweep import parameter_of
 from funicular.parts.paths import Variants, label_of, path_of, unit_of
 from funicular.sweeps.parameters import points_of
@@ -89,6 +89,17 @@ def test_paths_lead_to_the_value(path, value, get):
     assert made.to_toml() != base.to_toml() == scene().to_toml()
 
 
+def test_the_temperature_of_the_scene_is_that_of_its_cables_without_their_own():
+    base = Scene(temperature=10.0)
+    common = {"elements": 1, "section": Circle(radius=0.01),
+              "material": Material(youngs_modulus=1e9, poisson_ratio=0, density=1000, thermal_expansion=1e-5)}
+    base.cable("a", start=(0, 0, 0), end=(1, 0, 0), **common)
+    base.cable("b", start=(0, 1, 0), end=(1, 1, 0), temperature=3.0, **common)
+    made = changed(base, {"temperature": -5.0})
+    assert [made.cables[name].temperature for name in "ab"] == [-5.0, 3.0]
+    assert [base.cables[name].temperature for name in "ab"] == [10.0, 3.0]
+
+
 def test_what_is_not_swept_stays():
     base = scene()
     made = changed(base, {"A.velocity.x": 0.5})
@@ -143,6 +154,7 @@ def test_parts_before_the_first_that_changes_are_added_once(name, monkeypatch):
 
 @pytest.mark.parametrize("path, unit", [
     ("wire.material.youngs_modulus", "Pa"), ("A.mass", "kg"), ("A.velocity.x", "m/s"), ("gravity.y", "m/s²"),
+    ("temperature", "K"),
     ("run.duration", "s"), ("run.tol", ""), ("wire.section.height", "m"), ("wire.elements", "")])
 def test_units(path, unit):
     base = scene()
@@ -156,6 +168,7 @@ def test_units(path, unit):
     ("run.save", 'run has no "save"'),
     ("gravity", 'names no entry; write such as "gravity.x"'),
     ("gravity.w", 'gravity has no "w"'),
+    ("temperature.x", 'temperature has no entries; write "temperature"'),
     ("wire", "names no entry"),
 ])
 def test_paths_that_lead_nowhere_are_refused(path, words):

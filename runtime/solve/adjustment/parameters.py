@@ -56,7 +56,8 @@ class Parameters(Generic[S]):
     def _value(self, path: Path) -> float:
         """Return the number at a path. Raises SceneError where there is none."""
         if path.part is None and path.head != "gravity":
-            raise SceneError(path.where, "settings cannot be adjusted", "give a path into a part, or gravity")
+            what = "the temperature of a scene" if path.head == "temperature" else "settings"
+            raise SceneError(path.where, f"{what} cannot be adjusted", "give a path into a part, or gravity")
         value = value_at(self.scene, path)
         part = None if path.part is None else self.parts[path.part]
         if value is None and isinstance(part, Cable) and path.entries == ("rest_length",):
