@@ -215,7 +215,8 @@ class _Reader:
     def _drag(self, name: str, kind: LineType) -> None:
         if self.options["rhow"] > 0 and kind.diameter > 0:
             self.scene.drag(name, normal=kind.drag[0], tangential=kind.drag[1], diameter=kind.diameter,
-                            added_mass=kind.added[0], added_mass_tangential=kind.added[1], name=f"{name}_water")
+                            added_mass=kind.added[0], added_mass_tangential=kind.added[1], added_mass_form="morison",
+                            name=f"{name}_water")
 
     def _bed(self, name: str, kind: LineType) -> None:
         """Add contact with the bed, whose damping is MoorDyn's at the depth of the line at rest on it."""
@@ -287,9 +288,6 @@ class _Reader:
                 self.notes.append(f"{rows[0].where}: {table} are left out")
         if any(kind.diameter == 0 for kind in self.types.values()):
             self.notes.append("lines of diameter 0 have no water and no bed")
-        if self.options["rhow"] > 0:
-            self.notes.append("the inertia of the water is that of its kinetic energy, of which Morison's form, that "
-                              "of MoorDyn, leaves out terms in the rotation of a line")
 
 
 class _at:  # noqa: N801  it reads as a word

@@ -46,6 +46,7 @@ def test_each_number_arrives(tmp_path):
     assert rope.material.damping_time == pytest.approx(1e5 / 1e7)
     drag = scene.drags["line_1_water"]
     assert (drag.normal, drag.tangential, drag.added_mass, drag.diameter) == (1.6, 0.1, 1.0, 0.1)
+    assert drag.added_mass_form == "morison"
     clump = scene.drags["point_3_water"]
     assert (clump.on, clump.area, clump.volume, clump.added_mass) == ("point_3", 1.5, 0.8, 0.5)
     assert scene.point_masses["point_3"].mass == 5000
@@ -76,7 +77,7 @@ def test_what_it_leaves_out_is_said(tmp_path):
                 "Line\n() ()\n1 1\n--------------------- need"))
     said = "\n".join(scene.messages)
     for part in ("waves are left out", "M, V and CdA of a point that is not free are left out", "the point has no line "
-                 "and is left out", "in the place of its pin give a motion", "control are left out", "Morison's form"):
+                 "and is left out", "in the place of its pin give a motion", "control are left out"):
         assert part in said, said
 
 
