@@ -47,7 +47,7 @@ DRAWN = {"straight": {}, "taut": {"rest_length": 0.995}, "hanging": {"shape": "h
          "curved": {"points": [(0, 0, 0), (0.5, -0.1, 0), (1, 0, 0)]},
          "bent": {"points": [(0, 0, 0), (0.5, -0.1, 0), (1, 0, 0)], "rest": "straight"},
          "uneven": {"nodes": [0, 0.2, 0.5, 1.0]}}
-PIECES = {"none": (), "equal": (1.0, 1.0), "of two materials": (1.0, 2.0)}
+PIECES = {"none": (), "equal": (1.0, 1.0), "of two materials": (1.0, 2.0), "at a hinge": (1.0, 1.0)}
 """Young's moduli of the pieces of the wire, over that of its material; none: a wire without pieces."""
 GROWTH: dict[str, dict] = {
     "none": {}, "temperature": {"temperature": -5.0},
@@ -107,6 +107,7 @@ SUPPORTS: dict[str, Callable[[Site], object]] = {
     "pin": lambda on: on.scene.pin("wire", s=0),
     "clamp": lambda on: on.scene.clamp("wire", s=0),
     "clamp all": lambda on: on.scene.clamp("wire", s=0, fix="all"),
+    "clamp at an angle": lambda on: on.scene.clamp("wire", s=0, direction=(1, 0.2, 0)),
     "motion, turned": lambda on: on.scene.motion("wire", s=0, rotation=((0, 0, 1), SIGNALS["ramp"])),
     "motion, free along": lambda on: on.scene.motion("wire", s=0, displacement=("free", SIGNALS["ramp"], 0)),
     **{f"motion by {form}": lambda on, signal=signal: on.scene.motion("wire", s=0, displacement=(0, signal, 0))
@@ -460,9 +461,10 @@ def _made_of(section: object, material: fu.Material, row: dict[str, str]) -> dic
     """Return the section, material and mesh of the wire, or its pieces."""
     if ratios := PIECES[row["pieces"]]:
         modulus = material.youngs_modulus
-        return {"pieces": [fu.Piece(length=length, section=section, elements=elements, material=material.remade(
-            {"youngs_modulus": ratio * modulus})) for length, elements, ratio in zip((0.4, 0.6), (1, 2), ratios,
-                                                                                     strict=True)]}
+        return {"pieces": [fu.Piece(
+            length=length, section=section, elements=elements, hinge=k > 0 and row["pieces"] == "at a hinge",
+            material=material.remade({"youngs_modulus": ratio * modulus}))
+            for k, (length, elements, ratio) in enumerate(zip((0.4, 0.6), (1, 2), ratios, strict=True))]}
     mesh = {} if "nodes" in DRAWN[row["drawn"]] else {"elements": 3}
     return {"section": section, "material": material} | mesh
 

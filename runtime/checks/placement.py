@@ -7,6 +7,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from ..base.rotations import unit
 from ..errors import FunicularWarning, SceneError, near
 from ..kernels.elements import built_in
 from ..parts.attachment import Attachment
@@ -21,7 +22,7 @@ from ..parts.point_mass import PointMass
 from ..parts.rope import Rope
 from ..parts.scene_data import SceneData
 from ..parts.signal import Signal, presence_of
-from ..parts.support import Support, Tie
+from ..parts.support import Clamp, Support, Tie
 from ..parts.validation import LENGTH_TOLERANCE, show
 from .frames import plane_normal
 
@@ -31,6 +32,8 @@ SUPPORTED = {"pin": "pinned", "clamp": "clamped", "motion": "moved as prescribed
 
 
 AXES = ("x", "y", "z")
+LEAST_COSINE = -0.999
+"""Of the angle between a clamp's direction and the tangent as drawn, beyond which the shortest turn is not known."""
 WATCHABLE = {"rigid_body": ("position", "velocity"), "modal_body": ("position", "velocity"),
              "cable": ("position", "velocity", "least_strain"), "slide": ("s", "s_rate", "traction")}
 """Quantities with thresholds, by kind of part."""
@@ -81,6 +84,12 @@ def check_without_hinge(where: str, cable: Cable) -> None:
 def placed_support(scene: SceneData, support: Support) -> Support:
     """Return the support, checked to be on a free node."""
     node = node_at(scene, support.cable, support.where, support.s)
+    if isinstance(support, Clamp) and support.direction is not None:
+        drawn, along = (unit(np.asarray(each)) for each in (scene.cables[support.cable].axes_at(support.s)[0],
+                                                            support.direction))
+        if drawn @ along < LEAST_COSINE:
+            raise SceneError(support.where, f"direction {show(support.direction)} is opposite to the tangent as drawn, "
+                             f"{show(drawn)}, towards larger s", "draw the cable to leave the clamp in this direction")
     if (other := support_of(scene, node)) is None:
         return support
     if node_of(scene, other) == node:

@@ -12,7 +12,7 @@ from ..parts.scene_data import SceneData
 from .attachments import ModelBuilder
 from .bodies import body_gravity, body_models, body_weights, configuration_of, dofs_of, velocity_of
 from .border import ACCELERATIONS, NEWTON, elimination
-from .cables import CableArrays, arrays_of, cable_rates, level_tied_slopes
+from .cables import CableArrays, arrays_of, cable_rates, level_tied_slopes, turn_to_clamps
 from .coupling import number
 from .cutting import attached
 from .driven_dofs import DrivenDofs
@@ -43,6 +43,7 @@ def build(scene: SceneData, supplied: bool = False) -> Model:
     bodies = body_models(scene, driven.let_grow(cables, scene))
     nodal = [cable.vectors[..., :dim].copy() for cable in drawn]
     level_tied_slopes(scene, nodal)
+    turn_to_clamps(scene, nodal)
     nodes = {model.name: _nodes(model, scene.cables[model.name].where, vectors)
              for model, vectors in zip(cables, nodal, strict=True)}
     builder = ModelBuilder(scene, cables, ropes, bodies, driven.dofs)

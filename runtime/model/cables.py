@@ -6,9 +6,12 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
+from ..base.rotations import unit
+from ..errors import SceneError
 from ..kernels.elements import gauge
 from ..kernels.libraries import kernels_of
 from ..parts.cable import Cable
+from ..parts.locations import ends_of
 from ..parts.scene_data import SceneData
 from .constants import constants
 from .model import CableModel, CablePiece
@@ -124,6 +127,28 @@ def level_tied_slopes(scene: SceneData, nodal: list[np.ndarray]) -> None:
         if abs(lengths[0] - lengths[1]) > MAX_SLOPE_DIFFERENCE * max(lengths):
             for slope, length in zip(slopes, lengths, strict=True):
                 slope *= min(lengths) / length  # a longer one would turn a short element back on itself
+
+
+def turn_to_clamps(scene: SceneData, nodal: list[np.ndarray]) -> None:
+    """Turn the vectors of clamped nodes, but their positions, to the directions of clamps, the shortest way.
+
+    nodal: (nodes, vectors, dim) of each cable as drawn, changed in place. Raises SceneError.
+    """
+    numbers = {name: k for k, name in enumerate(scene.cables)}
+    for clamp in scene.clamps:
+        if clamp.direction is None:
+            continue
+        cable, along = scene.cables[clamp.cable], unit(np.array(clamp.direction)[: scene.dim])
+        names, node = cable.kind_of_element.nodal_vectors, cable.node(clamp.s)
+        if any(tie.rotation == "rigid" and (clamp.cable, node) in ends_of(scene, tie) for tie in scene.ties.values()):
+            raise SceneError(clamp.where, "has a direction, and a rigid tie joins the node to another cable",
+                             'give the tie rotation="free", or draw the cables along the direction')
+        for each in cable.mesh.at_node(node):
+            vectors = nodal[numbers[clamp.cable]][each]
+            tangent, turned = unit(vectors[names.index("r_x")]), np.array([name != "r" for name in names])
+            mean = tangent + along
+            turn = np.outer(2 * along, tangent) - np.outer(mean, mean) / (1 + tangent @ along)
+            vectors[turned] = vectors[turned] @ (np.eye(scene.dim) + turn).T
 
 
 def cable_rates(scene: SceneData, reduction: Reduction) -> np.ndarray:

@@ -54,18 +54,24 @@ class Pin(Support):
     results: ClassVar[dict[str, Quantity]] = {"force": ON_CABLE["force"]}
 
 
+GIVEN_DIRECTION = direction()
+
+
 class Clamp(Support):
     """Holds the position of a cable's node at ``s`` (m) and its section, or all of its nodal vectors.
 
     fix: "section": of cables the direction of the tangent, while its length stays free; of beams the axes of the
         section, r_y and r_z, while r_x stays free, so that shear and stretch are not hindered. "all": every nodal
         vector
+    direction: of the tangent there, towards larger s, by default as drawn. The section turns to it the shortest way;
+        drawn otherwise, the cable begins bent beside the clamp, and `equilibrium` finds its rest
     """
 
     kind = "clamp"
     group = "clamps"
     positional = ("cable",)
     fix: Annotated[str, one_of(("section", "all"))] = "section"
+    direction: Annotated[Vector | None, GIVEN_DIRECTION] = None
 
 
 class Rotation(Part):
