@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import SceneError, near
-from .building import named
+from .building import called, named
 
 if TYPE_CHECKING:
     import xarray as xr  # brings pandas
@@ -202,12 +202,17 @@ def plot_uplift(run: Run, axes: Axes, at: Sequence[int] | None = None) -> None:
     axes.legend(loc="upper right", fontsize="small")
 
 
-def plot_droppers(run: Run, axes: Axes, span: int, droppers: Sequence[int] | None = None) -> None:
-    """Draw the forces of a span's droppers over time; span and droppers are numbered from 1, by default all."""
-    chosen = "[0-9]+" if droppers is None else f"({'|'.join(map(str, droppers))})"
-    names = named(run.scene.point_forces, f"dropper_{span}_{chosen}")
+def plot_droppers(run: Run, axes: Axes, span: int, droppers: Sequence[int] | None = None, section: int = 1) -> None:
+    """Draw the forces of a span's droppers over time.
+
+    span, of the section, and droppers, by default all, are numbered from 1.
+    """
+    start = called(section, f"dropper_{span}_")
+    every = [name for name in run.scene.point_forces if name.startswith(start)]
+    names = every if droppers is None else [f"{start}{k}" for k in droppers]
     for name in names:
         axes.plot(run.time, run[f"{name}.tension"], linewidth=1, label=f"dropper {name.rpartition('_')[2]}")
-    axes.set(xlabel="time in s", ylabel="force in N", title=f"droppers of span {span}")
+    of = f" of section {section}" * (section > 1)
+    axes.set(xlabel="time in s", ylabel="force in N", title=f"droppers of span {span}{of}")
     axes.set_ylim(bottom=min(0.0, float(np.min([run[f'{name}.tension'].min() for name in names]))))
     axes.legend(loc="upper right", fontsize="small", ncols=3)

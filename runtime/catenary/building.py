@@ -35,12 +35,17 @@ class Section:
 
     def called(self, name: str) -> str:
         """Return the name of a part."""
-        return name if self.number == 1 else f"section_{self.number}_{name}"
+        return called(self.number, name)
 
     @property
     def masts(self) -> list[float]:
         """Return the places of the masts, in m along the track."""
         return [self.start + mast for mast in self.line.masts]
+
+
+def called(section: int, name: str) -> str:
+    """Return the name of a part of a section, counted from 1."""
+    return name if section == 1 else f"section_{section}_{name}"
 
 
 def named(names: Iterable[str], name: str) -> list[str]:

@@ -178,8 +178,8 @@ def scene(lines: Line | Form | Sequence[Line | Form], longest: tuple[float, floa
     masses stay. Raises SceneError, EquilibriumError.
     """
     given = [lines] if isinstance(lines, Line | Form) else [*lines]
+    sections = in_sections([each if isinstance(each, Line) else each.line for each in given], overlaps)
     formed = [form(each, longest) if isinstance(each, Line) else each for each in given]
-    sections = in_sections([each.line for each in formed], overlaps)
     made = Scene(gravity=(0, -sections[0].line.gravity, 0), temperature=temperature)
     planar = all(section.line.planar for section in sections)
     for section, each in zip(sections, formed, strict=True):

@@ -22,7 +22,10 @@ STRIP_LENGTH = 0.06
 """m: of a strip along the track, as drawn."""
 
 LEVER = 0.25
-"""m: of springs that hold a head level, from its pivot; and of the lower ends of strips' springs, below these."""
+"""m: of springs that hold a head level, from its pivot."""
+
+SPRING_LENGTH = 1.0
+"""m: of springs of heads and strips, free of force: more than any motion in the search for rest, so that none folds."""
 
 
 class Head(Part):
@@ -80,8 +83,9 @@ def _hold_level(scene: Scene, head: Head, carrier: str, body: str, name: str, pl
     """Add springs that hold a head level, before and behind its pivot, and to both sides of it if it rolls."""
     levers = [(side * LEVER, 0.0) for side in (-1, 1)] + [(0.0, side * LEVER) for side in (-1, 1) if not planar]
     for k, (x, z) in enumerate(levers):
-        scene.spring((carrier, (x, -LEVER, z)), (body, (x, 0.0, z)), name=f"{name}_level_{k + 1}", length=LEVER,
-                     stiffness=head.tilt_stiffness / (2 * LEVER**2), damping=head.tilt_damping / (2 * LEVER**2))
+        scene.spring((carrier, (x, -SPRING_LENGTH, z)), (body, (x, 0.0, z)), length=SPRING_LENGTH,
+                     name=f"{name}_level_{k + 1}", stiffness=head.tilt_stiffness / (2 * LEVER**2),
+                     damping=head.tilt_damping / (2 * LEVER**2))
 
 
 def _add_strip(scene: Scene, head: Head, k: int, body: str, place: tuple[float, float], speed: float, name: str
@@ -94,8 +98,8 @@ def _add_strip(scene: Scene, head: Head, k: int, body: str, place: tuple[float, 
     _add_body(scene, strip, head.strip_mass, head.strip_mass * REACH**2 / 3, (place[0] + x, place[1]), speed,
               Box(size=(STRIP_LENGTH, 2 * RADIUS, 2 * REACH)))
     scene.joint("prismatic", (body, (x, 0.0, 0.0)), strip, axis=(0, 1, 0), name=f"{strip}_guide")
-    scene.spring((body, (x, -LEVER, 0.0)), strip, stiffness=head.strip_stiffness, damping=head.strip_damping,
-                 length=LEVER, name=f"{strip}_spring")
+    scene.spring((body, (x, -SPRING_LENGTH, 0.0)), strip, stiffness=head.strip_stiffness, damping=head.strip_damping,
+                 length=SPRING_LENGTH, name=f"{strip}_spring")
     return strip, (0.0, 0.0, 0.0)
 
 

@@ -83,7 +83,7 @@ def add_pantograph(scene: Scene, pantograph: Pantograph | JointedPantograph, at:
     settings["duration"] = min(duration, settings.get("duration", duration))
     if "absolute_tol" in settings and not has_tolerance:
         settings["absolute_tol"] = min(settings["absolute_tol"], MAX_ERROR_RATE * settings["duration"])
-    height = min(float(np.interp(at, x, y)) for x, y, _ in drawn if x[0] <= at <= x[-1]) - RADIUS
+    height = min(float(y.min()) for x, y, _ in drawn if x[0] <= at <= x[-1]) - RADIUS
     strips = [(f"{name}_1", (0.0, 0.0, 0.0))]
     if isinstance(pantograph, JointedPantograph):
         height += INITIAL_PENETRATION

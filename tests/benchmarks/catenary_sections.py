@@ -1,15 +1,18 @@
-"""Catenaries of unequal spans, in the cold and the heat, beside strings and balances of forces.
+"""Catenaries of unequal spans, warm and cold, with overlaps and tilting heads, beside strings and balances of forces.
 
     python tests/benchmarks/catenary_sections.py [--out FILE.csv]
 
 The spans are those of the 55 m line of pantographs.py, and two shorter ones. spans: heights of the contact wire at the
 droppers beside the given ones, and the weight that the droppers bear. temperature: tensions of wires with held ends
 beside two strings with springs between them, of the same stress-free lengths; with balance weights the tension at the
-weights.
+weights. overlaps: a passage through three spans with two contact wires; the mean force at 20 m/s beside the uplift
+force less that of the lowest spring. heads: the impulse of the strips beside the momentum of all masses; one strip that
+is part of its head beside a collector without one.
 """
 
 from __future__ import annotations
 
+import funicular as fu
 import numpy as np
 from funicular import catenary
 from pantographs import line55
@@ -37,7 +40,65 @@ def unequal(**changes: object) -> catenary.Line:
     return line(3, span=[55.0, 48.0, 50.0], droppers=[first, *others], **changes)
 
 
-def heights_off(of: catenary.Line, rest: object) -> np.ndarray:
+SPAN, RISE, OVERLAP = 55.0, 0.5, 3
+"""Length of each span; height of the anchors over the running wire, m; spans in common."""
+
+
+def overlapping(staggered: bool = False, **changes: object) -> list[catenary.Line]:
+    """Return two sections of four and five spans, with three in common: six spans in all.
+
+    From the middle of the overlap on, the contact wire of the first rises on a parabola to its anchor, and that of the
+    second comes down as its mirror image. staggered: the wires are at 0.1 m on both sides of the track's middle there.
+    """
+    usual = line55().droppers
+    x, height = np.array(usual.at), catenary.End(height=RISE)
+
+    def rising(spans: int) -> list[catenary.Droppers]:
+        """Return the droppers of a line that rises at its end."""
+        middle, found = (spans - OVERLAP / 2) * SPAN, [usual] * (spans - OVERLAP)
+        for k in range(spans - OVERLAP, spans):
+            up = RISE * np.clip((k * SPAN + x - middle) / (OVERLAP * SPAN / 2), 0, None) ** 2
+            found.append(usual.remade({"sag": -up}))
+        return found
+
+    falling = [each.remade({"sag": each.depths[::-1]}) for each in rising(5)[::-1]]
+    sides = [{"stagger": each} if staggered else {} for each in (
+        [0.2, 0.1, 0.1, 0.1, 0.1], [-0.1, -0.1, -0.1, -0.1, -0.2, 0.2])]
+    return [line(len(droppers), span=[SPAN] * len(droppers), droppers=droppers, ends=ends, **side, **changes)
+            for droppers, ends, side in ((rising(4), (catenary.End(), height), sides[0]),
+                                         (falling, (height, catenary.End()), sides[1]))]
+
+
+CHAIN = {"stiffness": [4200, 50], "damping": [10, 90], "uplift": 120}
+COLLECTOR = catenary.Pantograph(masses=[7.2, 15], **CHAIN)
+SPRUNG = catenary.Head(mass=3.0, inertia=0.3, strip_mass=1.0, strip_stiffness=4e3, strip_damping=20.0)
+RIGID = catenary.Head(mass=3.0, inertia=0.3)
+ONE = catenary.Head(mass=3.0, inertia=0.3, strips=[0.0], tilt_stiffness=1e3)
+
+
+def with_head(head: catenary.Head) -> catenary.Pantograph:
+    """Return the pantograph with a head in the place of its collector, of the same mass in all."""
+    strips = 0.0 if head.strip_stiffness is None else head.strip_mass * len(head.strips)
+    return catenary.Pantograph(masses=[7.2 - head.mass - strips, 15], tilting_head=head, **CHAIN)
+
+
+def passage(scene: fu.Scene, pantograph: catenary.Pantograph, start: float, speed: float, **settings: object) -> fu.Run:
+    """Return a run of a pantograph from a place (m) on at a speed (m/s)."""
+    catenary.add_pantograph(scene, pantograph, start, speed)
+    return scene.run(progress=False, **settings)
+
+
+def vertical_impulse(run: fu.Run) -> tuple[float, float]:
+    """Return the vertical impulse of all contacts of a run, and that by the momentum of the masses, N s."""
+    names = catenary.contacts(run)
+    found = np.trapezoid(sum(run[f"{name}.force"][:, 1] for name in names), run.time)
+    bodies = [body for name, body in run.scene.bodies.items() if name != "pantograph_base"]
+    momentum = sum(body.mass * np.diff(run[f"{body.name}.velocity"][[0, -1], 1])[0] for body in bodies)
+    pulled = np.trapezoid(CHAIN["uplift"] - run["pantograph_spring_2.tension"], run.time)
+    return float(found), float(pulled - momentum)
+
+
+def heights_off(of: catenary.Line, rest: fu.Equilibrium) -> np.ndarray:
     """Return by how much the contact wire is above its given heights at the droppers, in m."""
     wire = rest["contact.position"]
     return np.array([wire[np.argmin(np.abs(wire[:, 0] - span.start - x)), 1] + depth for span in of.each
@@ -87,7 +148,7 @@ def strings(of: catenary.Line, temperature: float) -> np.ndarray:
     return np.asarray(found.x[:2] * 1e4)
 
 
-def tensions(scene: object) -> np.ndarray:
+def tensions(scene: fu.Scene) -> np.ndarray:
     """Return the tensions of contact wire and messenger at the first mast of a scene (2,), N."""
     rest = scene.equilibrium()
     return -np.array([float(rest[f"{name}@0.force"][0]) for name in ("contact", "messenger_1")])
@@ -124,10 +185,42 @@ def temperature_rows() -> list[dict]:
     return rows
 
 
+def overlap_rows() -> list[dict]:
+    """Return the rows of a passage through an overlap."""
+    forms, rows = [catenary.form(each, COARSE) for each in overlapping()], []
+    for speed, (start, end) in few({20.0: (105.0, 170.0), 60.0: (80.0, 200.0)}.items()):
+        run = passage(catenary.scene(forms, overlaps=OVERLAP), COLLECTOR, start, speed, duration=(end - start) / speed)
+        found = catenary.assess(run, [(110.0, 165.0)])
+        case = f"overlap, {speed:g} m/s"
+        rows += [row(case, "impulse of both contacts, N s", *vertical_impulse(run)),
+                 row(case, "losses of contact", float(found.losses[0]), 0.0, 1.0)]
+        if speed == 20.0:
+            spring = run["pantograph_spring_2.tension"]
+            rows.append(row(case, "mean force, N", float(found.force.mean()), CHAIN["uplift"] - float(spring.mean())))
+    return rows
+
+
+def head_rows() -> list[dict]:
+    """Return the rows of heads that tilt."""
+    form = catenary.form(line(2), COARSE)
+
+    def run_of(pantograph: catenary.Pantograph) -> fu.Run:
+        return passage(catenary.scene(form), pantograph, 20.0, 50.0, duration=1.2, output_step=1e-3)
+
+    rows = [row(f"{name}, 50 m/s", "impulse of both strips, N s", *vertical_impulse(run_of(with_head(head))))
+            for name, head in few({"strips on springs": SPRUNG, "rigid strips": RIGID}.items())]
+    one, usual = (run_of(each)["pantograph_contact.normal_force"] for each in (with_head(ONE), COLLECTOR))
+    at = int(np.argmax(np.abs(one - usual)))
+    return [*rows, row("one rigid strip, 50 m/s", "force of a collector, N", float(one[at]), float(usual[at]))]
+
+
+TABLES = spans_rows, temperature_rows, overlap_rows, head_rows
+
+
 def main() -> None:
     """Print the table."""
     given = arguments(__doc__)
-    show([each for rows in few((spans_rows, temperature_rows)) for each in rows()], given.out)
+    show([each for rows in few(TABLES) for each in rows()], given.out)
 
 
 if __name__ == "__main__":
