@@ -218,7 +218,8 @@ model.""",
                text="""The 55 m line with a pantograph of three masses, spans 7 and 8 of 12, and two of them 200 m
 apart. There is no reference; meshes of 1 m and 0.5 m are compared."""),
          Table("catenary_sections",
-               {"case": "case", "quantity": "quantity", "funicular": "ours", "reference": "reference", "error": "error"},
+               {"case": "case", "quantity": "quantity", "funicular": "ours", "reference": "reference",
+                "error": "error"},
                text="""Unequal spans; wires with held ends beside two strings with springs between, and with balance
 weights; the impulse of all contacts in an overlap of two sections, and of two strips, beside the momentum of the
 pantograph.""")],
