@@ -101,6 +101,7 @@ class SceneMethods(SceneData):
         *,
         s: float,
         fix: str = "section",
+        direction: Numbers | None = None,
     ) -> Clamp:
         """Add a Clamp, which see."""
 
@@ -194,6 +195,9 @@ class SceneMethods(SceneData):
         distance: Scale | None = None,
         velocity: Scale | None = None,
         length: float | None = None,
+        friction: Friction | float | None = None,
+        radius: float | None = None,
+        normal_force: float | None = None,
         name: str | None = None,
     ) -> Joint:
         """Add a Joint, which see."""
