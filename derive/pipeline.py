@@ -26,6 +26,7 @@ from .catalogue import families, named, whole_groups
 from .codegen import drift, manifest, provenance
 from .codegen import rendering as emit
 from .codegen.family import Family, FamilyError
+from .spec import MAX_SEGMENTS
 
 
 def generate(names: list[str] | None = None, show: bool = False) -> dict[str, str]:
@@ -53,7 +54,8 @@ def generate(names: list[str] | None = None, show: bool = False) -> dict[str, st
     own = {name: files.get(name, drift.current(name)) for d in known for name in drift.of(d.family)}
     files[drift.MANIFEST] = manifest.text(known, _origin(record, None if names is None else wanted.keys()),
                                           {name: text for name, text in own.items() if text is not None},
-                                          more={"section_points": section_points.table()})
+                                          more={"section_points": section_points.table(),
+                                                "max_segments": MAX_SEGMENTS})
     return files
 
 

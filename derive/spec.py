@@ -18,6 +18,9 @@ COORDINATES = {"x": x, "y": y, "z": z}
 CABLE_LAWS = ("green_exact", "green_linear", "engineering_exact", "engineering_linear")
 ASSUMED_LAWS = tuple(f"{law}_assumed" for law in CABLE_LAWS)
 TENSION_ONLY_LAWS = ("engineering_exact_tension_only",)
+TABULATED_LAWS = ("engineering_exact_tabulated",)
+MAX_SEGMENTS = 24
+"""Of a tabulated axial force."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +30,8 @@ class LawTraits:
     kind               "cable" (of the axis alone), "continuum" or "structural" (of the whole section)
     strain, curvature  the measures of a cable: "green" or "engineering", "exact" or "linear"
     membrane           how a cable represents its axial strain: "full", or "assumed", by its lowest Legendre
-                       modes, or "tension_only": full, without resistance to compression
+                       modes, or "tension_only": full, without resistance to compression, or "tabulated": full,
+                       with a force by a table
     straight           where the law is for a curved stress-free shape: the law for a straight one; else empty
     takes_shape        whether its kernels take the stress-free shape e0
     damped_like        the law whose damping kernels it takes; empty where it has its own

@@ -378,7 +378,7 @@ void cable12_engineering_exact_damping_tangent(fu_real l, const fu_real *e, cons
     FU_PAIRS(i, j, 3, difference11_d10[i][j] = K_0[i][j] - K_2[i][j];)
     CABLE12_PART_OF_DERIVATIVES_AT_THE_QUADRATURE_POINTS
     CABLE12_BLOCKS_OVER_STRAIN_VECTORS_2
-    CABLE12_OVER_NODAL_VECTORS_K_T_3
+    CABLE12_OVER_NODAL_VECTORS_K_T_2
     CABLE12_OVER_NODAL_VECTORS_T_K_T_3
     /* the first position: rigid translation makes no force */
     fu_real K_r_1_r_2[3][3];

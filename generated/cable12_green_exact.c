@@ -318,8 +318,37 @@ void cable12_green_exact_discrete_force(fu_real l, const fu_real *e, const fu_re
 void cable12_green_exact_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k)
 {
     CABLE12_STRAIN_VECTORS_AT_BOTH_ENDS_OF_THE_STEP_2
-    CABLE12_STRAIN_OF_THE_CHANGE_AT_THE_QUADRATURE_POINTS
-    CABLE12_OVER_NODAL_VECTORS_K_T_2
+    /* strain of the change at the quadrature points */
+    const fu_real
+        EA_l = 0.5*A[0]/w,
+        d_even0_x = change_t0_x + 0.40000000000000013*change_t_x[1],
+        d_even0_y = change_t0_y + 0.40000000000000013*change_t_y[1],
+        d_even0_z = change_t0_z + 0.40000000000000013*change_t_z[1],
+        d_odd0_x = -(0.7745966692414834*change_t_x[0]),
+        d_odd0_y = -(0.7745966692414834*change_t_y[0]),
+        d_odd0_z = -(0.7745966692414834*change_t_z[0]),
+        d_2_x = d_even0_x - d_odd0_x,
+        d_2_y = d_even0_y - d_odd0_y,
+        d_2_z = d_even0_z - d_odd0_z,
+        d_0_x = d_even0_x + d_odd0_x,
+        d_0_y = d_even0_y + d_odd0_y,
+        d_0_z = d_even0_z + d_odd0_z,
+        d_1_x = change_t0_x - 0.5*change_t_x[1],
+        d_1_y = change_t0_y - 0.5*change_t_y[1],
+        d_1_z = change_t0_z - 0.5*change_t_z[1],
+        u_0 = 0.06944444444444446*EA_l*(d_0_x*d_0_x + d_0_y*d_0_y + d_0_z*d_0_z),
+        u_1 = 0.1111111111111111*EA_l*(d_1_x*d_1_x + d_1_y*d_1_y + d_1_z*d_1_z),
+        u_2 = 0.06944444444444446*EA_l*(d_2_x*d_2_x + d_2_y*d_2_y + d_2_z*d_2_z);
+    /* over nodal vectors: K T */
+    const fu_real
+        KT_t0_r_2_xx = w*(0.5999999999999999*u_0 + 1.5*u_1 + 0.5999999999999999*u_2),
+        KT_t0_r_x2_xx = -0.18729833462074164*u_0 - 0.25*u_1 + 0.5872983346207418*u_2,
+        KT_t1_r_x1_xx = -0.45491933384829675*u_0 - 0.1450806661517033*u_2,
+        KT_t1_r_2_xx = w*(-0.46475800154488994*u_0 + 0.46475800154488994*u_2),
+        KT_t1_r_x2_xx = 0.1450806661517033*u_0 + 0.45491933384829675*u_2,
+        KT_t2_r_x1_xx = 0.23491933384829677*u_0 + 0.125*u_1 - 0.07491933384829667*u_2,
+        KT_t2_r_2_xx = w*(0.24000000000000002*u_0 - 0.75*u_1 + 0.24000000000000002*u_2),
+        KT_t2_r_x2_xx = -0.07491933384829667*u_0 + 0.125*u_1 + 0.23491933384829677*u_2;
     CABLE12_OVER_NODAL_VECTORS_T_K_T_2
     /* the first position: rigid translation makes no force */
     const fu_real
@@ -385,7 +414,7 @@ void cable12_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_r
     FU_PAIRS(i, j, 3, difference11_d10[i][j] = K_0[i][j] - K_2[i][j];)
     CABLE12_PART_OF_DERIVATIVES_AT_THE_QUADRATURE_POINTS
     CABLE12_BLOCKS_OVER_STRAIN_VECTORS_2
-    CABLE12_OVER_NODAL_VECTORS_K_T_3
+    CABLE12_OVER_NODAL_VECTORS_K_T_2
     CABLE12_OVER_NODAL_VECTORS_T_K_T_3
     /* the first position: rigid translation makes no force */
     fu_real K_r_1_r_2[3][3];

@@ -5,7 +5,7 @@
 #ifndef FUNICULAR_CABLE12_STAGES_H
 #define FUNICULAR_CABLE12_STAGES_H
 
-/* part of strain at the quadrature points: of cable12_green_exact_energy and 7 more */
+/* part of strain at the quadrature points: of cable12_green_exact_energy and 8 more */
 #define CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS \
     const fu_real \
         r1_even0_x = chord2_x + 0.7317428697781312*t2_x, \
@@ -18,7 +18,7 @@
     r1_y[4] = r1_even0_y - r1_odd0_y; \
     r1_z[4] = r1_even0_z - r1_odd0_z;
 
-/* part of strain at the quadrature points: of cable12_green_exact_energy and 7 more */
+/* part of strain at the quadrature points: of cable12_green_exact_energy and 8 more */
 #define CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_2 \
     const fu_real \
         r1_even1_x = chord2_x - 0.06507620311146456*t2_x, \
@@ -31,7 +31,7 @@
     r1_y[3] = r1_even1_y - r1_odd1_y; \
     r1_z[3] = r1_even1_z - r1_odd1_z;
 
-/* part of strain at the quadrature points: of cable12_green_exact_energy and 6 more */
+/* part of strain at the quadrature points: of cable12_green_exact_energy and 7 more */
 #define CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_3 \
     const fu_real \
         r2_odd0_x = -(2.718539537815992*t2_x), \
@@ -61,7 +61,7 @@
         b[g] = r1_x[g]*r2_x[g] + r1_y[g]*r2_y[g] + r1_z[g]*r2_z[g]; \
         c[g] = r2_x[g]*r2_x[g] + r2_y[g]*r2_y[g] + r2_z[g]*r2_z[g];)
 
-/* part of forces at the quadrature points: of cable12_green_exact_elastic_force and 4 more */
+/* part of forces at the quadrature points: of cable12_green_exact_elastic_force and 5 more */
 #define CABLE12_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS \
     FU_EACH(i, 3, sum_abc1_0[i] = F1_abc[0][i] + F1_abc[4][i];) \
     FU_EACH(i, 3, difference_abc1_0[i] = F1_abc[0][i] - F1_abc[4][i];) \
@@ -72,7 +72,7 @@
     FU_EACH(i, 3, sum_abc2_1[i] = F2_abc[1][i] + F2_abc[3][i];) \
     FU_EACH(i, 3, difference_abc2_1[i] = F2_abc[1][i] - F2_abc[3][i];)
 
-/* part of second derivatives at the quadrature points: of cable12_green_exact_elastic_tangent and 4 more */
+/* part of second derivatives at the quadrature points: of cable12_green_exact_elastic_tangent and 5 more */
 #define CABLE12_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS \
     FU_UPPER(i, j, 3, sum11_abc0[i][j] = K11_abc[0][i][j] + K11_abc[4][i][j]; sum11_abc0[j][i] = sum11_abc0[i][j];) \
     FU_UPPER(i, j, 3, sum11_abc1[i][j] = K11_abc[1][i][j] + K11_abc[3][i][j]; sum11_abc1[j][i] = sum11_abc1[i][j];) \
@@ -87,7 +87,7 @@
     FU_UPPER(i, j, 3, difference22_abc0[i][j] = K22_abc[0][i][j] - K22_abc[4][i][j]; difference22_abc0[j][i] = difference22_abc0[i][j];) \
     FU_UPPER(i, j, 3, difference22_abc1[i][j] = K22_abc[1][i][j] - K22_abc[3][i][j]; difference22_abc1[j][i] = difference22_abc1[i][j];)
 
-/* part of strain at the quadrature points: of cable12_green_exact_discrete_force and 5 more */
+/* part of strain at the quadrature points: of cable12_green_exact_discrete_force and 6 more */
 #define CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_4 \
     FU_EACH(i, 3, now_r2_at[0][i] = -now_r2_odd1[i] + now_t1[i];) \
     FU_EACH(i, 3, next_r2_at[0][i] = -next_r2_odd1[i] + next_t1[i];) \
@@ -246,7 +246,7 @@
         now_a1[g] = now_r1[g][0]*now_r1[g][0] + now_r1[g][1]*now_r1[g][1] + now_r1[g][2]*now_r1[g][2] - 1.0; \
         next_a1[g] = next_r1[g][0]*next_r1[g][0] + next_r1[g][1]*next_r1[g][1] + next_r1[g][2]*next_r1[g][2] - 1.0;)
 
-/* part of strain at the quadrature points: of cable12_engineering_exact_discrete_force and 1 more */
+/* part of strain at the quadrature points: of cable12_engineering_exact_discrete_force and 2 more */
 #define CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_7 \
     FU_EACH(g, 5, \
         now_len[g] = FU_SQRT(now_a1[g] + 1.0); \
@@ -756,7 +756,7 @@
     FU_PAIRS(i, j, 3, K_t_t1[1][i][j] = -0.5773502691896257*difference_d20[1][i][j] - 0.5773502691896257*difference_d20[2][i][j] + 0.6000000000000001*sum11_d10[i][j] + 0.3333333333333333*sum_d20[0][i][j] + sum_d20[3][i][j];) \
     FU_PAIRS(i, j, 3, K_t_t2[1][i][j] = -0.30983866769659346*difference11_d10[i][j] - 1.7320508075688772*difference_d20[3][i][j] + 0.9999999999999999*sum_d20[1][i][j];)
 
-/* part of strain vectors: of cable12_green_exact_energy and 15 more */
+/* part of strain vectors: of cable12_green_exact_energy and 17 more */
 #define CABLE12_PART_OF_STRAIN_VECTORS \
     const fu_real \
         chord2_x = w*(-e[0] + e[6]), \
@@ -769,7 +769,7 @@
         t2_y = -chord2_y + 0.5*e[10] + 0.5*e[4], \
         t2_z = -chord2_z + 0.5*e[11] + 0.5*e[5];
 
-/* part of strain at the quadrature points: of cable12_green_exact_elastic_force and 13 more */
+/* part of strain at the quadrature points: of cable12_green_exact_elastic_force and 15 more */
 #define CABLE12_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_8 \
     FU_EACH(i, 3, r2_odd0[i] = -(2.718539537815992*t2[i]);) \
     FU_EACH(i, 3, r2[4][i] = -r2_odd0[i] + t1[i];) \
@@ -783,19 +783,19 @@
         b[g] = r1[g][0]*r2[g][0] + r1[g][1]*r2[g][1] + r1[g][2]*r2[g][2]; \
         c[g] = r2[g][0]*r2[g][0] + r2[g][1]*r2[g][1] + r2[g][2]*r2[g][2];)
 
-/* strain vectors: of cable12_green_exact_energy and 8 more */
+/* strain vectors: of cable12_green_exact_energy and 9 more */
 #define CABLE12_STRAIN_VECTORS \
     const fu_real w = 1.0/l; \
     CABLE12_PART_OF_STRAIN_VECTORS
 
-/* forces on strain vectors: of cable12_green_exact_elastic_force and 4 more */
+/* forces on strain vectors: of cable12_green_exact_elastic_force and 5 more */
 #define CABLE12_FORCES_ON_STRAIN_VECTORS \
     fu_real f_t0[3], f_t1[3], f_t2[3]; \
     FU_EACH(i, 3, f_t0[i] = F1_abc[2][i] + sum_abc1_0[i] + sum_abc1_1[i];) \
     FU_EACH(i, 3, f_t1[i] = F2_abc[2][i] - 0.906179845938664*difference_abc1_0[i] - 0.5384693101056831*difference_abc1_1[i] + sum_abc2_0[i] + sum_abc2_1[i];) \
     FU_EACH(i, 3, f_t2[i] = -0.5*F1_abc[2][i] - 2.718539537815992*difference_abc2_0[i] - 1.6154079303170494*difference_abc2_1[i] + 0.7317428697781312*sum_abc1_0[i] - 0.06507620311146456*sum_abc1_1[i];)
 
-/* blocks over strain vectors: of cable12_green_exact_elastic_tangent and 2 more */
+/* blocks over strain vectors: of cable12_green_exact_elastic_tangent and 3 more */
 #define CABLE12_BLOCKS_OVER_STRAIN_VECTORS \
     fu_real K_t0_t0[3][3], K_t0_t1[3][3], K_t0_t2[3][3], K_t1_t1[3][3], K_t1_t2[3][3], K_t2_t2[3][3]; \
     FU_UPPER(i, j, 3, K_t0_t0[i][j] = K11_abc[2][i][j] + sum11_abc0[i][j] + sum11_abc1[i][j]; K_t0_t0[j][i] = K_t0_t0[i][j];) \
@@ -805,7 +805,7 @@
     FU_PAIRS(i, j, 3, K_t1_t2[i][j] = -0.5*K12_abc[2][j][i] - 0.6630906410022628*difference11_abc0[i][j] + 0.03504153819372763*difference11_abc1[i][j] - 2.718539537815992*difference22_abc0[i][j] - 1.6154079303170494*difference22_abc1[i][j] + 2.4634857395562624*sum12_abc0[i][j] + 0.7317428697781312*sum12_abc0[j][i] + 0.869847593777071*sum12_abc1[i][j] - 0.06507620311146456*sum12_abc1[j][i];) \
     FU_UPPER(i, j, 3, K_t2_t2[i][j] = 0.25*K11_abc[2][i][j] - 1.9892719230067883*difference12_abc0[i][j] - 1.9892719230067883*difference12_abc0[j][i] + 0.1051246145811829*difference12_abc1[i][j] + 0.1051246145811829*difference12_abc1[j][i] + 0.5354476274711351*sum11_abc0[i][j] + 0.0042349122114045895*sum11_abc1[i][j] + 7.390457218668788*sum22_abc0[i][j] + 2.6095427813312133*sum22_abc1[i][j]; K_t2_t2[j][i] = K_t2_t2[i][j];)
 
-/* over nodal vectors: K T: of cable12_green_exact_elastic_tangent and 10 more */
+/* over nodal vectors: K T: of cable12_green_exact_elastic_tangent and 11 more */
 #define CABLE12_OVER_NODAL_VECTORS_K_T \
     fu_real KT_t0_r_2[3][3], KT_t0_r_x2[3][3], KT_t1_r_x1[3][3], KT_t1_r_2[3][3], KT_t1_r_x2[3][3], KT_t2_r_x1[3][3], \
         KT_t2_r_2[3][3], KT_t2_r_x2[3][3]; \
@@ -818,7 +818,7 @@
     FU_PAIRS(i, j, 3, KT_t2_r_2[i][j] = w*(K_t0_t2[j][i] - K_t2_t2[i][j]);) \
     FU_PAIRS(i, j, 3, KT_t2_r_x2[i][j] = 0.5*K_t1_t2[j][i] + 0.5*K_t2_t2[i][j];)
 
-/* over nodal vectors: T' K T: of cable12_green_exact_elastic_tangent and 10 more */
+/* over nodal vectors: T' K T: of cable12_green_exact_elastic_tangent and 11 more */
 #define CABLE12_OVER_NODAL_VECTORS_T_K_T \
     fu_real K_r_x1_r_2[3][3], K_r_2_r_2[3][3], K_r_2_r_x2[3][3]; \
     FU_UPPER(i, j, 3, K[12*i + j + 39] = -0.5*KT_t1_r_x1[i][j] + 0.5*KT_t2_r_x1[i][j]; K[12*j + i + 39] = K[12*i + j + 39];) \
@@ -828,7 +828,7 @@
     FU_PAIRS(i, j, 3, K_r_2_r_x2[i][j] = K[12*i + j + 81] = K[12*j + i + 114] = w*(KT_t0_r_x2[i][j] - KT_t2_r_x2[i][j]);) \
     FU_UPPER(i, j, 3, K[12*i + j + 117] = 0.5*KT_t1_r_x2[i][j] + 0.5*KT_t2_r_x2[i][j]; K[12*j + i + 117] = K[12*i + j + 117];)
 
-/* strain vectors at both ends of the step: of cable12_green_exact_discrete_force and 10 more */
+/* strain vectors at both ends of the step: of cable12_green_exact_discrete_force and 11 more */
 #define CABLE12_STRAIN_VECTORS_AT_BOTH_ENDS_OF_THE_STEP \
     fu_real chordnow_2[3], now_t1[3], now_t2[3], chordnext_2[3], next_t1[3], next_t2[3]; \
     const fu_real w = 1.0/l; \
@@ -839,14 +839,14 @@
     FU_EACH(i, 3, next_t1[i] = -0.5*e_next[i + 3] + 0.5*e_next[i + 9];) \
     FU_EACH(i, 3, next_t2[i] = -chordnext_2[i] + 0.5*e_next[i + 3] + 0.5*e_next[i + 9];)
 
-/* forces on strain vectors: of cable12_green_exact_discrete_force and 8 more */
+/* forces on strain vectors: of cable12_green_exact_discrete_force and 9 more */
 #define CABLE12_FORCES_ON_STRAIN_VECTORS_2 \
     fu_real f_t0[3], f_t1[3], f_t2[3]; \
     FU_EACH(i, 3, f_t0[i] = F1_abc2[i] + sum_abc[0][i] + sum_abc[1][i];) \
     FU_EACH(i, 3, f_t1[i] = F2_abc2[i] - 0.906179845938664*difference_abc[0][i] - 0.5384693101056831*difference_abc[1][i] + sum_abc[2][i] + sum_abc[3][i];) \
     FU_EACH(i, 3, f_t2[i] = -0.5*F1_abc2[i] - 2.718539537815992*difference_abc[2][i] - 1.6154079303170494*difference_abc[3][i] + 0.7317428697781312*sum_abc[0][i] - 0.06507620311146456*sum_abc[1][i];)
 
-/* strain vectors at both ends of the step: of cable12_green_exact_step_stiffness and 2 more */
+/* strain vectors at both ends of the step: of cable12_green_exact_step_stiffness and 1 more */
 #define CABLE12_STRAIN_VECTORS_AT_BOTH_ENDS_OF_THE_STEP_2 \
     fu_real now_t_x[2], now_t_y[2], now_t_z[2], next_t_x[2], next_t_y[2], next_t_z[2], change_t_x[2], change_t_y[2], \
         change_t_z[2]; \
@@ -880,42 +880,7 @@
         change_t_y[g] = next_t_y[g] - now_t_y[g]; \
         change_t_z[g] = next_t_z[g] - now_t_z[g];)
 
-/* strain of the change at the quadrature points: of cable12_green_exact_step_stiffness and 1 more */
-#define CABLE12_STRAIN_OF_THE_CHANGE_AT_THE_QUADRATURE_POINTS \
-    const fu_real \
-        EA_l = 0.5*A[0]/w, \
-        d_even0_x = change_t0_x + 0.40000000000000013*change_t_x[1], \
-        d_even0_y = change_t0_y + 0.40000000000000013*change_t_y[1], \
-        d_even0_z = change_t0_z + 0.40000000000000013*change_t_z[1], \
-        d_odd0_x = -(0.7745966692414834*change_t_x[0]), \
-        d_odd0_y = -(0.7745966692414834*change_t_y[0]), \
-        d_odd0_z = -(0.7745966692414834*change_t_z[0]), \
-        d_2_x = d_even0_x - d_odd0_x, \
-        d_2_y = d_even0_y - d_odd0_y, \
-        d_2_z = d_even0_z - d_odd0_z, \
-        d_0_x = d_even0_x + d_odd0_x, \
-        d_0_y = d_even0_y + d_odd0_y, \
-        d_0_z = d_even0_z + d_odd0_z, \
-        d_1_x = change_t0_x - 0.5*change_t_x[1], \
-        d_1_y = change_t0_y - 0.5*change_t_y[1], \
-        d_1_z = change_t0_z - 0.5*change_t_z[1], \
-        u_0 = 0.06944444444444446*EA_l*(d_0_x*d_0_x + d_0_y*d_0_y + d_0_z*d_0_z), \
-        u_1 = 0.1111111111111111*EA_l*(d_1_x*d_1_x + d_1_y*d_1_y + d_1_z*d_1_z), \
-        u_2 = 0.06944444444444446*EA_l*(d_2_x*d_2_x + d_2_y*d_2_y + d_2_z*d_2_z);
-
-/* over nodal vectors: K T: of cable12_green_exact_step_stiffness and 1 more */
-#define CABLE12_OVER_NODAL_VECTORS_K_T_2 \
-    const fu_real \
-        KT_t0_r_2_xx = w*(0.5999999999999999*u_0 + 1.5*u_1 + 0.5999999999999999*u_2), \
-        KT_t0_r_x2_xx = -0.18729833462074164*u_0 - 0.25*u_1 + 0.5872983346207418*u_2, \
-        KT_t1_r_x1_xx = -0.45491933384829675*u_0 - 0.1450806661517033*u_2, \
-        KT_t1_r_2_xx = w*(-0.46475800154488994*u_0 + 0.46475800154488994*u_2), \
-        KT_t1_r_x2_xx = 0.1450806661517033*u_0 + 0.45491933384829675*u_2, \
-        KT_t2_r_x1_xx = 0.23491933384829677*u_0 + 0.125*u_1 - 0.07491933384829667*u_2, \
-        KT_t2_r_2_xx = w*(0.24000000000000002*u_0 - 0.75*u_1 + 0.24000000000000002*u_2), \
-        KT_t2_r_x2_xx = -0.07491933384829667*u_0 + 0.125*u_1 + 0.23491933384829677*u_2;
-
-/* over nodal vectors: T' K T: of cable12_green_exact_step_stiffness and 2 more */
+/* over nodal vectors: T' K T: of cable12_green_exact_step_stiffness and 1 more */
 #define CABLE12_OVER_NODAL_VECTORS_T_K_T_2 \
     const fu_real \
         K_r_x1_r_x1_xx = -0.5*KT_t1_r_x1_xx + 0.5*KT_t2_r_x1_xx, \
@@ -925,7 +890,7 @@
         K_r_2_r_x2_xx = w*(KT_t0_r_x2_xx - KT_t2_r_x2_xx), \
         K_r_x2_r_x2_xx = 0.5*KT_t1_r_x2_xx + 0.5*KT_t2_r_x2_xx;
 
-/* outputs: of cable12_green_exact_step_stiffness and 2 more */
+/* outputs: of cable12_green_exact_step_stiffness and 1 more */
 #define CABLE12_OUTPUTS \
     k[0] = -K_r_1_r_2_xx; \
     k[1] = K_r_1_r_x1_xx; \
@@ -981,7 +946,7 @@
     FU_PAIRS(i, j, 3, K_t_t2[2][i][j] = 0.25*K_1[i][j] + 0.16000000000000011*sum11_d10[i][j] + 2.9999999999999996*sum_d20[3][i][j];)
 
 /* over nodal vectors: K T: of cable12_green_exact_damping_tangent and 2 more */
-#define CABLE12_OVER_NODAL_VECTORS_K_T_3 \
+#define CABLE12_OVER_NODAL_VECTORS_K_T_2 \
     fu_real KT_t_r_x1[3][3][3], KT_t_r_2[3][3][3], KT_t_r_x2[3][3][3]; \
     FU_EACH(g, 3, \
         FU_PAIRS(i, j, 3, KT_t_r_x1[g][i][j] = -0.5*K_t_t1[g][i][j] + 0.5*K_t_t2[g][i][j];) \
@@ -1008,14 +973,14 @@
     const fu_real EI_tau = 2.0*A[1]*w; \
     CABLE12_PART_OF_RATE_OF_CURVATURE_AT_THE_QUADRATURE_POINTS
 
-/* strain vectors: of cable12_green_exact_section_forces and 4 more */
+/* strain vectors: of cable12_green_exact_section_forces and 5 more */
 #define CABLE12_STRAIN_VECTORS_2 \
     const fu_real \
         w = 1.0/l, \
         X = 2.0*w*x - 1.0; \
     CABLE12_PART_OF_STRAIN_VECTORS
 
-/* derivatives of the axis by x: of cable12_green_exact_section_forces and 6 more */
+/* derivatives of the axis by x: of cable12_green_exact_section_forces and 7 more */
 #define CABLE12_DERIVATIVES_OF_THE_AXIS_BY_X \
     const fu_real \
         r1_x = X*t1_x + chord2_x + t2_x*(1.5*X*X - 0.5), \
@@ -1042,7 +1007,7 @@
         dx_slope_y = W_b*r2_y + 2.0*W_c*r3_y + dx_W_b*r1_y + 2.0*dx_W_c*r2_y, \
         dx_slope_z = W_b*r2_z + 2.0*W_c*r3_z + dx_W_b*r1_z + 2.0*dx_W_c*r2_z;
 
-/* outputs: of cable12_green_exact_section_forces and 2 more */
+/* outputs: of cable12_green_exact_section_forces and 3 more */
 #define CABLE12_OUTPUTS_2 \
     force[0] = 2.0*W_a*r1_x + W_b*r2_x - dx_slope_x; \
     force[1] = 2.0*W_a*r1_y + W_b*r2_y - dx_slope_y; \
@@ -1115,7 +1080,7 @@
     FU_EACH(i, 3, sum_c1_0[i] = F_c0[i] + F_c1[i];) \
     FU_EACH(i, 3, difference_c1_0[i] = F_c0[i] - F_c1[i];)
 
-/* forces on r' and r'': of cable12_engineering_exact_section_forces and 2 more */
+/* forces on r' and r'': of cable12_engineering_exact_section_forces and 3 more */
 #define CABLE12_FORCES_ON_R_AND_R_2 \
     const fu_real \
         dx_b = r1_x*r3_x + r1_y*r3_y + r1_z*r3_z + r2_x*r2_x + r2_y*r2_y + r2_z*r2_z, \

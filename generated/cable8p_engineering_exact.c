@@ -412,7 +412,7 @@ void cable8p_engineering_exact_damping_tangent(fu_real l, const fu_real *e, cons
     FU_PAIRS(i, j, 2, difference11_d10[i][j] = K_0[i][j] - K_2[i][j];)
     CABLE8P_PART_OF_DERIVATIVES_AT_THE_QUADRATURE_POINTS
     CABLE8P_BLOCKS_OVER_STRAIN_VECTORS_2
-    CABLE8P_OVER_NODAL_VECTORS_K_T_3
+    CABLE8P_OVER_NODAL_VECTORS_K_T_2
     CABLE8P_OVER_NODAL_VECTORS_T_K_T_3
     /* the first position: rigid translation makes no force */
     fu_real K_r_1_r_2[2][2];

@@ -5,7 +5,7 @@
 #ifndef FUNICULAR_CABLE8P_STAGES_H
 #define FUNICULAR_CABLE8P_STAGES_H
 
-/* part of strain at the quadrature points: of cable8p_green_exact_energy and 4 more */
+/* part of strain at the quadrature points: of cable8p_green_exact_energy and 5 more */
 #define CABLE8P_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS \
     const fu_real \
         r2_odd0_x = -(2.718539537815992*t2_x), \
@@ -28,7 +28,7 @@
         b[g] = r1_x[g]*r2_x[g] + r1_y[g]*r2_y[g]; \
         c[g] = r2_x[g]*r2_x[g] + r2_y[g]*r2_y[g];)
 
-/* part of forces at the quadrature points: of cable8p_green_exact_elastic_force and 4 more */
+/* part of forces at the quadrature points: of cable8p_green_exact_elastic_force and 5 more */
 #define CABLE8P_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS \
     FU_EACH(i, 2, sum_abc1_0[i] = F1_abc[0][i] + F1_abc[4][i];) \
     FU_EACH(i, 2, difference_abc1_0[i] = F1_abc[0][i] - F1_abc[4][i];) \
@@ -39,7 +39,7 @@
     FU_EACH(i, 2, sum_abc2_1[i] = F2_abc[1][i] + F2_abc[3][i];) \
     FU_EACH(i, 2, difference_abc2_1[i] = F2_abc[1][i] - F2_abc[3][i];)
 
-/* part of second derivatives at the quadrature points: of cable8p_green_exact_elastic_tangent and 4 more */
+/* part of second derivatives at the quadrature points: of cable8p_green_exact_elastic_tangent and 5 more */
 #define CABLE8P_PART_OF_SECOND_DERIVATIVES_AT_THE_QUADRATURE_POINTS \
     FU_UPPER(i, j, 2, sum11_abc0[i][j] = K11_abc[0][i][j] + K11_abc[4][i][j]; sum11_abc0[j][i] = sum11_abc0[i][j];) \
     FU_UPPER(i, j, 2, sum11_abc1[i][j] = K11_abc[1][i][j] + K11_abc[3][i][j]; sum11_abc1[j][i] = sum11_abc1[i][j];) \
@@ -54,7 +54,7 @@
     FU_UPPER(i, j, 2, difference22_abc0[i][j] = K22_abc[0][i][j] - K22_abc[4][i][j]; difference22_abc0[j][i] = difference22_abc0[i][j];) \
     FU_UPPER(i, j, 2, difference22_abc1[i][j] = K22_abc[1][i][j] - K22_abc[3][i][j]; difference22_abc1[j][i] = difference22_abc1[i][j];)
 
-/* part of strain at the quadrature points: of cable8p_green_exact_discrete_force and 3 more */
+/* part of strain at the quadrature points: of cable8p_green_exact_discrete_force and 4 more */
 #define CABLE8P_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_2 \
     FU_EACH(i, 2, now_r2_at[0][i] = -now_r2_odd1[i] + now_t1[i];) \
     FU_EACH(i, 2, next_r2_at[0][i] = -next_r2_odd1[i] + next_t1[i];) \
@@ -95,7 +95,7 @@
         now_cross2[g] = now_a[g]*now_c[g] - now_b[g]*now_b[g]; \
         next_cross2[g] = next_a[g]*next_c[g] - next_b[g]*next_b[g];)
 
-/* part of forces at the quadrature points: of cable8p_green_exact_discrete_force and 4 more */
+/* part of forces at the quadrature points: of cable8p_green_exact_discrete_force and 5 more */
 #define CABLE8P_PART_OF_FORCES_AT_THE_QUADRATURE_POINTS_2 \
     FU_EACH(i, 2, mean1_abc2[i] = 0.5*next_r1_2[i] + 0.5*now_r1_2[i];) \
     FU_EACH(i, 2, mean2_abc2[i] = 0.5*next_t1[i] + 0.5*now_t1[i];) \
@@ -217,7 +217,7 @@
     FU_UPPER(i, j, 2, difference11_a0[i][j] = K_a[0][i][j] - K_a[4][i][j]; difference11_a0[j][i] = difference11_a0[i][j];) \
     FU_UPPER(i, j, 2, difference11_a1[i][j] = K_a[1][i][j] - K_a[3][i][j]; difference11_a1[j][i] = difference11_a1[i][j];)
 
-/* part of strain at the quadrature points: of cable8p_engineering_exact_discrete_force and 1 more */
+/* part of strain at the quadrature points: of cable8p_engineering_exact_discrete_force and 2 more */
 #define CABLE8P_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_4 \
     FU_EACH(g, 5, \
         now_len[g] = FU_SQRT(now_a1[g] + 1.0); \
@@ -271,7 +271,7 @@
     FU_PAIRS(i, j, 2, K_t_t1[1][i][j] = -0.5773502691896257*difference_d20[1][i][j] - 0.5773502691896257*difference_d20[2][i][j] + 0.6000000000000001*sum11_d10[i][j] + 0.3333333333333333*sum_d20[0][i][j] + sum_d20[3][i][j];) \
     FU_PAIRS(i, j, 2, K_t_t2[1][i][j] = -0.30983866769659346*difference11_d10[i][j] - 1.7320508075688772*difference_d20[3][i][j] + 0.9999999999999999*sum_d20[1][i][j];)
 
-/* part of strain at the quadrature points: of cable8p_green_exact_elastic_force and 9 more */
+/* part of strain at the quadrature points: of cable8p_green_exact_elastic_force and 11 more */
 #define CABLE8P_PART_OF_STRAIN_AT_THE_QUADRATURE_POINTS_5 \
     FU_EACH(i, 2, r2_odd0[i] = -(2.718539537815992*t2[i]);) \
     FU_EACH(i, 2, r2[4][i] = -r2_odd0[i] + t1[i];) \
@@ -285,14 +285,14 @@
         b[g] = r1[g][0]*r2[g][0] + r1[g][1]*r2[g][1]; \
         c[g] = r2[g][0]*r2[g][0] + r2[g][1]*r2[g][1];)
 
-/* forces on strain vectors: of cable8p_green_exact_elastic_force and 4 more */
+/* forces on strain vectors: of cable8p_green_exact_elastic_force and 5 more */
 #define CABLE8P_FORCES_ON_STRAIN_VECTORS \
     fu_real f_t0[2], f_t1[2], f_t2[2]; \
     FU_EACH(i, 2, f_t0[i] = F1_abc[2][i] + sum_abc1_0[i] + sum_abc1_1[i];) \
     FU_EACH(i, 2, f_t1[i] = F2_abc[2][i] - 0.906179845938664*difference_abc1_0[i] - 0.5384693101056831*difference_abc1_1[i] + sum_abc2_0[i] + sum_abc2_1[i];) \
     FU_EACH(i, 2, f_t2[i] = -0.5*F1_abc[2][i] - 2.718539537815992*difference_abc2_0[i] - 1.6154079303170494*difference_abc2_1[i] + 0.7317428697781312*sum_abc1_0[i] - 0.06507620311146456*sum_abc1_1[i];)
 
-/* blocks over strain vectors: of cable8p_green_exact_elastic_tangent and 2 more */
+/* blocks over strain vectors: of cable8p_green_exact_elastic_tangent and 3 more */
 #define CABLE8P_BLOCKS_OVER_STRAIN_VECTORS \
     fu_real K_t0_t0[2][2], K_t0_t1[2][2], K_t0_t2[2][2], K_t1_t1[2][2], K_t1_t2[2][2], K_t2_t2[2][2]; \
     FU_UPPER(i, j, 2, K_t0_t0[i][j] = K11_abc[2][i][j] + sum11_abc0[i][j] + sum11_abc1[i][j]; K_t0_t0[j][i] = K_t0_t0[i][j];) \
@@ -302,7 +302,7 @@
     FU_PAIRS(i, j, 2, K_t1_t2[i][j] = -0.5*K12_abc[2][j][i] - 0.6630906410022628*difference11_abc0[i][j] + 0.03504153819372763*difference11_abc1[i][j] - 2.718539537815992*difference22_abc0[i][j] - 1.6154079303170494*difference22_abc1[i][j] + 2.4634857395562624*sum12_abc0[i][j] + 0.7317428697781312*sum12_abc0[j][i] + 0.869847593777071*sum12_abc1[i][j] - 0.06507620311146456*sum12_abc1[j][i];) \
     FU_UPPER(i, j, 2, K_t2_t2[i][j] = 0.25*K11_abc[2][i][j] - 1.9892719230067883*difference12_abc0[i][j] - 1.9892719230067883*difference12_abc0[j][i] + 0.1051246145811829*difference12_abc1[i][j] + 0.1051246145811829*difference12_abc1[j][i] + 0.5354476274711351*sum11_abc0[i][j] + 0.0042349122114045895*sum11_abc1[i][j] + 7.390457218668788*sum22_abc0[i][j] + 2.6095427813312133*sum22_abc1[i][j]; K_t2_t2[j][i] = K_t2_t2[i][j];)
 
-/* over nodal vectors: K T: of cable8p_green_exact_elastic_tangent and 8 more */
+/* over nodal vectors: K T: of cable8p_green_exact_elastic_tangent and 9 more */
 #define CABLE8P_OVER_NODAL_VECTORS_K_T \
     fu_real KT_t0_r_2[2][2], KT_t0_r_x2[2][2], KT_t1_r_x1[2][2], KT_t1_r_2[2][2], KT_t1_r_x2[2][2], KT_t2_r_x1[2][2], \
         KT_t2_r_2[2][2], KT_t2_r_x2[2][2]; \
@@ -315,7 +315,7 @@
     FU_PAIRS(i, j, 2, KT_t2_r_2[i][j] = w*(K_t0_t2[j][i] - K_t2_t2[i][j]);) \
     FU_PAIRS(i, j, 2, KT_t2_r_x2[i][j] = 0.5*K_t1_t2[j][i] + 0.5*K_t2_t2[i][j];)
 
-/* over nodal vectors: T' K T: of cable8p_green_exact_elastic_tangent and 8 more */
+/* over nodal vectors: T' K T: of cable8p_green_exact_elastic_tangent and 9 more */
 #define CABLE8P_OVER_NODAL_VECTORS_T_K_T \
     fu_real K_r_x1_r_2[2][2], K_r_2_r_2[2][2], K_r_2_r_x2[2][2]; \
     FU_UPPER(i, j, 2, K[8*i + j + 18] = -0.5*KT_t1_r_x1[i][j] + 0.5*KT_t2_r_x1[i][j]; K[8*j + i + 18] = K[8*i + j + 18];) \
@@ -325,7 +325,7 @@
     FU_PAIRS(i, j, 2, K_r_2_r_x2[i][j] = K[8*i + j + 38] = K[8*j + i + 52] = w*(KT_t0_r_x2[i][j] - KT_t2_r_x2[i][j]);) \
     FU_UPPER(i, j, 2, K[8*i + j + 54] = 0.5*KT_t1_r_x2[i][j] + 0.5*KT_t2_r_x2[i][j]; K[8*j + i + 54] = K[8*i + j + 54];)
 
-/* strain vectors at both ends of the step: of cable8p_green_exact_discrete_force and 8 more */
+/* strain vectors at both ends of the step: of cable8p_green_exact_discrete_force and 9 more */
 #define CABLE8P_STRAIN_VECTORS_AT_BOTH_ENDS_OF_THE_STEP \
     fu_real chordnow_2[2], now_t1[2], now_t2[2], chordnext_2[2], next_t1[2], next_t2[2]; \
     const fu_real w = 1.0/l; \
@@ -336,14 +336,14 @@
     FU_EACH(i, 2, next_t1[i] = -0.5*e_next[i + 2] + 0.5*e_next[i + 6];) \
     FU_EACH(i, 2, next_t2[i] = -chordnext_2[i] + 0.5*e_next[i + 2] + 0.5*e_next[i + 6];)
 
-/* forces on strain vectors: of cable8p_green_exact_discrete_force and 4 more */
+/* forces on strain vectors: of cable8p_green_exact_discrete_force and 5 more */
 #define CABLE8P_FORCES_ON_STRAIN_VECTORS_2 \
     fu_real f_t0[2], f_t1[2], f_t2[2]; \
     FU_EACH(i, 2, f_t0[i] = F1_abc2[i] + sum_abc[0][i] + sum_abc[1][i];) \
     FU_EACH(i, 2, f_t1[i] = F2_abc2[i] - 0.906179845938664*difference_abc[0][i] - 0.5384693101056831*difference_abc[1][i] + sum_abc[2][i] + sum_abc[3][i];) \
     FU_EACH(i, 2, f_t2[i] = -0.5*F1_abc2[i] - 2.718539537815992*difference_abc[2][i] - 1.6154079303170494*difference_abc[3][i] + 0.7317428697781312*sum_abc[0][i] - 0.06507620311146456*sum_abc[1][i];)
 
-/* strain vectors at both ends of the step: of cable8p_green_exact_step_stiffness and 2 more */
+/* strain vectors at both ends of the step: of cable8p_green_exact_step_stiffness and 1 more */
 #define CABLE8P_STRAIN_VECTORS_AT_BOTH_ENDS_OF_THE_STEP_2 \
     const fu_real \
         w = 1.0/l, \
@@ -366,37 +366,7 @@
         change_t2_x = next_t2_x - now_t2_x, \
         change_t2_y = next_t2_y - now_t2_y;
 
-/* strain of the change at the quadrature points: of cable8p_green_exact_step_stiffness and 1 more */
-#define CABLE8P_STRAIN_OF_THE_CHANGE_AT_THE_QUADRATURE_POINTS \
-    const fu_real \
-        EA_l = 0.5*A[0]/w, \
-        d_even0_x = change_t0_x + 0.40000000000000013*change_t2_x, \
-        d_even0_y = change_t0_y + 0.40000000000000013*change_t2_y, \
-        d_odd0_x = -(0.7745966692414834*change_t1_x), \
-        d_odd0_y = -(0.7745966692414834*change_t1_y), \
-        d_2_x = d_even0_x - d_odd0_x, \
-        d_2_y = d_even0_y - d_odd0_y, \
-        d_0_x = d_even0_x + d_odd0_x, \
-        d_0_y = d_even0_y + d_odd0_y, \
-        d_1_x = change_t0_x - 0.5*change_t2_x, \
-        d_1_y = change_t0_y - 0.5*change_t2_y, \
-        u_0 = 0.06944444444444446*EA_l*(d_0_x*d_0_x + d_0_y*d_0_y), \
-        u_1 = 0.1111111111111111*EA_l*(d_1_x*d_1_x + d_1_y*d_1_y), \
-        u_2 = 0.06944444444444446*EA_l*(d_2_x*d_2_x + d_2_y*d_2_y);
-
-/* over nodal vectors: K T: of cable8p_green_exact_step_stiffness and 1 more */
-#define CABLE8P_OVER_NODAL_VECTORS_K_T_2 \
-    const fu_real \
-        KT_t0_r_2_xx = w*(0.5999999999999999*u_0 + 1.5*u_1 + 0.5999999999999999*u_2), \
-        KT_t0_r_x2_xx = -0.18729833462074164*u_0 - 0.25*u_1 + 0.5872983346207418*u_2, \
-        KT_t1_r_x1_xx = -0.45491933384829675*u_0 - 0.1450806661517033*u_2, \
-        KT_t1_r_2_xx = w*(-0.46475800154488994*u_0 + 0.46475800154488994*u_2), \
-        KT_t1_r_x2_xx = 0.1450806661517033*u_0 + 0.45491933384829675*u_2, \
-        KT_t2_r_x1_xx = 0.23491933384829677*u_0 + 0.125*u_1 - 0.07491933384829667*u_2, \
-        KT_t2_r_2_xx = w*(0.24000000000000002*u_0 - 0.75*u_1 + 0.24000000000000002*u_2), \
-        KT_t2_r_x2_xx = -0.07491933384829667*u_0 + 0.125*u_1 + 0.23491933384829677*u_2;
-
-/* over nodal vectors: T' K T: of cable8p_green_exact_step_stiffness and 2 more */
+/* over nodal vectors: T' K T: of cable8p_green_exact_step_stiffness and 1 more */
 #define CABLE8P_OVER_NODAL_VECTORS_T_K_T_2 \
     const fu_real \
         K_r_x1_r_x1_xx = -0.5*KT_t1_r_x1_xx + 0.5*KT_t2_r_x1_xx, \
@@ -406,7 +376,7 @@
         K_r_2_r_x2_xx = w*(KT_t0_r_x2_xx - KT_t2_r_x2_xx), \
         K_r_x2_r_x2_xx = 0.5*KT_t1_r_x2_xx + 0.5*KT_t2_r_x2_xx;
 
-/* outputs: of cable8p_green_exact_step_stiffness and 2 more */
+/* outputs: of cable8p_green_exact_step_stiffness and 1 more */
 #define CABLE8P_OUTPUTS \
     k[0] = -K_r_1_r_2_xx; \
     k[1] = K_r_1_r_x1_xx; \
@@ -498,7 +468,7 @@
     FU_PAIRS(i, j, 2, K_t_t2[2][i][j] = 0.25*K_1[i][j] + 0.16000000000000011*sum11_d10[i][j] + 2.9999999999999996*sum_d20[3][i][j];)
 
 /* over nodal vectors: K T: of cable8p_green_exact_damping_tangent and 2 more */
-#define CABLE8P_OVER_NODAL_VECTORS_K_T_3 \
+#define CABLE8P_OVER_NODAL_VECTORS_K_T_2 \
     fu_real KT_t_r_x1[3][2][2], KT_t_r_2[3][2][2], KT_t_r_x2[3][2][2]; \
     FU_EACH(g, 3, \
         FU_PAIRS(i, j, 2, KT_t_r_x1[g][i][j] = -0.5*K_t_t1[g][i][j] + 0.5*K_t_t2[g][i][j];) \
@@ -545,7 +515,7 @@
         dx_slope_x = W_b*r2_x + 2.0*W_c*r3_x + dx_W_b*r1_x + 2.0*dx_W_c*r2_x, \
         dx_slope_y = W_b*r2_y + 2.0*W_c*r3_y + dx_W_b*r1_y + 2.0*dx_W_c*r2_y;
 
-/* outputs: of cable8p_green_exact_section_forces and 2 more */
+/* outputs: of cable8p_green_exact_section_forces and 3 more */
 #define CABLE8P_OUTPUTS_2 \
     force[0] = 2.0*W_a*r1_x + W_b*r2_x - dx_slope_x; \
     force[1] = 2.0*W_a*r1_y + W_b*r2_y - dx_slope_y; \
@@ -654,7 +624,7 @@
         strain[g + 1] = 0.0;) \
     strain[5] = FU_SQRT(c);
 
-/* forces on r' and r'': of cable8p_engineering_exact_section_forces and 2 more */
+/* forces on r' and r'': of cable8p_engineering_exact_section_forces and 3 more */
 #define CABLE8P_FORCES_ON_R_AND_R_2 \
     const fu_real \
         dx_b = r1_x*r3_x + r1_y*r3_y + r2_x*r2_x + r2_y*r2_y, \

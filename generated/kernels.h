@@ -39,6 +39,46 @@ typedef double fu_real;
 #define FU_REAL(x) (x)
 #endif
 
+#ifndef FU_BLOCK
+/* A function by cubic segments: t[0] segments of (start, integral, value, slope, c2, c3), codegen/piecewise.py. */
+static inline const fu_real *fu_cubic_segment(const fu_real *t, fu_real x)
+{
+    const fu_real *p = t + 1, *last = t + 1 + 6 * ((int)FU_REAL(t[0]) - 1);
+    while (p < last && FU_REAL(p[6]) <= FU_REAL(x)) p += 6;
+    return p;
+}
+static inline fu_real fu_cubic_integral(const fu_real *t, fu_real x)
+{
+    const fu_real *p = fu_cubic_segment(t, x), d = x - p[0];
+    return p[1] + d * (p[2] + d * (p[3] / 2.0 + d * (p[4] / 3.0 + d * p[5] / 4.0)));
+}
+static inline fu_real fu_cubic_value(const fu_real *t, fu_real x)
+{
+    const fu_real *p = fu_cubic_segment(t, x), d = x - p[0];
+    return p[2] + d * (p[3] + d * (p[4] + d * p[5]));
+}
+static inline fu_real fu_cubic_slope(const fu_real *t, fu_real x)
+{
+    const fu_real *p = fu_cubic_segment(t, x), d = x - p[0];
+    return p[3] + d * (2.0 * p[4] + d * 3.0 * p[5]);
+}
+/* The integral from a to b past the start of a segment, without the difference of two integrals. */
+static inline fu_real fu_cubic_part(const fu_real *p, fu_real a, fu_real b)
+{
+    const fu_real s = a + b, square = a * a + b * b;
+    return (b - a) * (p[2] + p[3] * s / 2.0 + p[4] * (square + a * b) / 3.0 + p[5] * s * square / 4.0);
+}
+static inline fu_real fu_cubic_mean(const fu_real *t, fu_real a, fu_real b)
+{
+    if (FU_REAL(b) < FU_REAL(a)) return fu_cubic_mean(t, b, a);
+    const fu_real *p = fu_cubic_segment(t, a), *last = fu_cubic_segment(t, b);
+    if (p == last && FU_REAL(a) == FU_REAL(b)) return fu_cubic_value(t, 0.5 * (a + b));
+    fu_real sum = 0.0, from = a;
+    for (; p < last; from = p[6], p += 6) sum += fu_cubic_part(p, from - p[0], p[6] - p[0]);
+    return (sum + fu_cubic_part(p, from - p[0], b - p[0])) / (b - a);
+}
+#endif
+
 /* Statements for each of n directions (or points) i, for pairs of directions (i, j), and for pairs i <= j. They are
  * repeated here, not by a loop: indices are constants then, and compilers keep the arrays in registers. */
 #ifndef FU_EACH
@@ -213,6 +253,11 @@ fu_law_energy_kernel cable12_green_exact_curved_energy, cable12_engineering_exac
 fu_law_energy_kernel cable12_engineering_exact_tension_only_energy;
 /* e 4x2, A 4, U 1 */
 fu_law_energy_kernel cable8p_engineering_exact_tension_only_energy;
+/* elastic energy: l [m]; e [m, 1]; A [N, N m^2, 1, then 1, N, N, N, N, N a segment] -> U [J] */
+/* e 4x3, A 147, U 1 */
+fu_law_energy_kernel cable12_engineering_exact_tabulated_energy;
+/* e 4x2, A 147, U 1 */
+fu_law_energy_kernel cable8p_engineering_exact_tabulated_energy;
 
 typedef void fu_law_elastic_force_kernel(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 /* dU/de, minus the elastic force Q_k: l [m]; e [m, 1]; A [N m] -> f [N, N m] */
@@ -256,6 +301,12 @@ fu_law_elastic_force_kernel cable12_green_exact_curved_elastic_force, cable12_en
 fu_law_elastic_force_kernel cable12_engineering_exact_tension_only_elastic_force;
 /* e 4x2, A 4, f 4x2 */
 fu_law_elastic_force_kernel cable8p_engineering_exact_tension_only_elastic_force;
+/* dU/de, minus the elastic force Q_k: l [m]; e [m, 1]; A [N, N m^2, 1, then 1, N, N, N, N, N a segment] -> f [N, N
+ * m] */
+/* e 4x3, A 147, f 4x3 */
+fu_law_elastic_force_kernel cable12_engineering_exact_tabulated_elastic_force;
+/* e 4x2, A 147, f 4x2 */
+fu_law_elastic_force_kernel cable8p_engineering_exact_tabulated_elastic_force;
 
 typedef void fu_law_elastic_tangent_kernel(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
 /* d2U/de2: l [m]; e [m, 1]; A [N m] -> K [N/m, N, N m] */
@@ -301,6 +352,11 @@ fu_law_elastic_tangent_kernel cable12_green_exact_curved_elastic_tangent,
 fu_law_elastic_tangent_kernel cable12_engineering_exact_tension_only_elastic_tangent;
 /* e 4x2, A 4, K 8x8 */
 fu_law_elastic_tangent_kernel cable8p_engineering_exact_tension_only_elastic_tangent;
+/* d2U/de2: l [m]; e [m, 1]; A [N, N m^2, 1, then 1, N, N, N, N, N a segment] -> K [N/m, N, N m] */
+/* e 4x3, A 147, K 12x12 */
+fu_law_elastic_tangent_kernel cable12_engineering_exact_tabulated_elastic_tangent;
+/* e 4x2, A 147, K 8x8 */
+fu_law_elastic_tangent_kernel cable8p_engineering_exact_tabulated_elastic_tangent;
 
 typedef void fu_law_discrete_force_kernel(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e [m, 1]; e_next [m, 1]; A [N m] -> f [N, N
@@ -346,6 +402,12 @@ fu_law_discrete_force_kernel cable12_green_exact_curved_discrete_force, cable12_
 fu_law_discrete_force_kernel cable12_engineering_exact_tension_only_discrete_force;
 /* e 4x2, e_next 4x2, A 4, f 4x2 */
 fu_law_discrete_force_kernel cable8p_engineering_exact_tension_only_discrete_force;
+/* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e [m, 1]; e_next [m, 1]; A [N, N m^2, 1,
+ * then 1, N, N, N, N, N a segment] -> f [N, N m] */
+/* e 4x3, e_next 4x3, A 147, f 4x3 */
+fu_law_discrete_force_kernel cable12_engineering_exact_tabulated_discrete_force;
+/* e 4x2, e_next 4x2, A 147, f 4x2 */
+fu_law_discrete_force_kernel cable8p_engineering_exact_tabulated_discrete_force;
 
 typedef void fu_law_step_stiffness_kernel(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e [m, 1]; e_next [m, 1]; A [N m] -> k [N/m, N, N
@@ -376,12 +438,6 @@ fu_law_step_stiffness_kernel cable12_green_exact_assumed_step_stiffness;
 fu_law_step_stiffness_kernel cable18_green_exact_assumed_step_stiffness;
 /* e 4x2, e_next 4x2, A 3, k 4x4 */
 fu_law_step_stiffness_kernel cable8p_green_exact_assumed_step_stiffness;
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e [m, 1]; e_next [m, 1]; A [N, N m^2, 1, 1] -> k
- * [N/m, N, N m] */
-/* e 4x3, e_next 4x3, A 4, k 4x4 */
-fu_law_step_stiffness_kernel cable12_engineering_exact_tension_only_step_stiffness;
-/* e 4x2, e_next 4x2, A 4, k 4x4 */
-fu_law_step_stiffness_kernel cable8p_engineering_exact_tension_only_step_stiffness;
 
 typedef void fu_law_damping_force_kernel(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 /* minus the Kelvin-Voigt damping force Q_d: l [m]; e [m, 1]; v [m/s, 1/s]; A [N m]; tau [s] -> f [N, N m] */
@@ -2313,6 +2369,19 @@ void cable12_engineering_exact_tension_only_section_forces(fu_real l, fu_real x,
     fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 /* e 4x2, S 4, force 3, moment 3, axes 3x3, strain 6 */
 void cable8p_engineering_exact_tension_only_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S,
+    fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
+/* constants of the law from the stiffness of the section: l [m]; S [N, N m^2, 1, then 1, N, N, N, N, N a segment] ->
+ * A [N, N m^2, 1, then 1, N, N, N, N, N a segment] */
+/* S 147, A 147 */
+void cable12_engineering_exact_tabulated_stiffness(fu_real l, const fu_real *S, fu_real *A);
+void cable8p_engineering_exact_tabulated_stiffness(fu_real l, const fu_real *S, fu_real *A);
+/* force and moment resultants of a section: l [m]; x [m]; e [m, 1]; S [N, N m^2, 1, then 1, N, N, N, N, N a segment]
+ * -> force [N]; moment [N m]; axes [1]; strain [1, 1/m] */
+/* e 4x3, S 147, force 3, moment 3, axes 3x3, strain 6 */
+void cable12_engineering_exact_tabulated_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S,
+    fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
+/* e 4x2, S 147, force 3, moment 3, axes 3x3, strain 6 */
+void cable8p_engineering_exact_tabulated_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S,
     fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* What the engine needs of a element. */

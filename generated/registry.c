@@ -74,9 +74,14 @@ static const fu_law_kernels laws[] = {
      cable12_engineering_exact_dissipation, cable12_engineering_exact_algorithmic_force},
     {"cable12_engineering_exact_tension_only", 9, 1, cable12_engineering_exact_tension_only_energy,
      cable12_engineering_exact_tension_only_elastic_force, cable12_engineering_exact_tension_only_elastic_tangent,
-     cable12_engineering_exact_tension_only_discrete_force, cable12_engineering_exact_tension_only_step_stiffness,
+     cable12_engineering_exact_tension_only_discrete_force, cable12_green_exact_step_stiffness,
      cable12_engineering_exact_tension_only_damping_force, cable12_engineering_exact_tension_only_damping_tangent,
      cable12_engineering_exact_tension_only_dissipation, cable12_engineering_exact_algorithmic_force},
+    {"cable12_engineering_exact_tabulated", 9, 1, cable12_engineering_exact_tabulated_energy,
+     cable12_engineering_exact_tabulated_elastic_force, cable12_engineering_exact_tabulated_elastic_tangent,
+     cable12_engineering_exact_tabulated_discrete_force, cable12_green_exact_step_stiffness,
+     cable12_engineering_exact_damping_force, cable12_engineering_exact_damping_tangent,
+     cable12_engineering_exact_dissipation, cable12_engineering_exact_algorithmic_force},
     {"cable18_green_exact", 17, 1, cable18_green_exact_energy, cable18_green_exact_elastic_force,
      cable18_green_exact_elastic_tangent, cable18_green_exact_discrete_force, cable18_green_exact_step_stiffness,
      cable18_green_exact_damping_force, cable18_green_exact_damping_tangent, cable18_green_exact_dissipation,
@@ -146,9 +151,14 @@ static const fu_law_kernels laws[] = {
      cable8p_engineering_exact_dissipation, cable8p_engineering_exact_algorithmic_force},
     {"cable8p_engineering_exact_tension_only", 7, 0, cable8p_engineering_exact_tension_only_energy,
      cable8p_engineering_exact_tension_only_elastic_force, cable8p_engineering_exact_tension_only_elastic_tangent,
-     cable8p_engineering_exact_tension_only_discrete_force, cable8p_engineering_exact_tension_only_step_stiffness,
+     cable8p_engineering_exact_tension_only_discrete_force, cable8p_green_exact_step_stiffness,
      cable8p_engineering_exact_tension_only_damping_force, cable8p_engineering_exact_tension_only_damping_tangent,
      cable8p_engineering_exact_tension_only_dissipation, cable8p_engineering_exact_algorithmic_force},
+    {"cable8p_engineering_exact_tabulated", 7, 0, cable8p_engineering_exact_tabulated_energy,
+     cable8p_engineering_exact_tabulated_elastic_force, cable8p_engineering_exact_tabulated_elastic_tangent,
+     cable8p_engineering_exact_tabulated_discrete_force, cable8p_green_exact_step_stiffness,
+     cable8p_engineering_exact_damping_force, cable8p_engineering_exact_damping_tangent,
+     cable8p_engineering_exact_dissipation, cable8p_engineering_exact_algorithmic_force},
 };
 
 static const fu_body_kernels bodys[] = {
@@ -658,11 +668,16 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(cable12_engineering_exact_tension_only_elastic_force, svv_1) \
     X(cable12_engineering_exact_tension_only_elastic_tangent, svv_1) \
     X(cable12_engineering_exact_tension_only_discrete_force, svvv_1) \
-    X(cable12_engineering_exact_tension_only_step_stiffness, svvv_1) \
     X(cable12_engineering_exact_tension_only_damping_force, svvvs_1) \
     X(cable12_engineering_exact_tension_only_damping_tangent, svvvss_1) \
     X(cable12_engineering_exact_tension_only_dissipation, svvvs_1) \
     X(cable12_engineering_exact_tension_only_section_forces, ssvv_4) \
+    X(cable12_engineering_exact_tabulated_stiffness, sv_1) \
+    X(cable12_engineering_exact_tabulated_energy, svv_1) \
+    X(cable12_engineering_exact_tabulated_elastic_force, svv_1) \
+    X(cable12_engineering_exact_tabulated_elastic_tangent, svv_1) \
+    X(cable12_engineering_exact_tabulated_discrete_force, svvv_1) \
+    X(cable12_engineering_exact_tabulated_section_forces, ssvv_4) \
     X(cable18_green_exact_stiffness, sv_1) \
     X(cable18_green_exact_energy, svv_1) \
     X(cable18_green_exact_elastic_force, svv_1) \
@@ -786,11 +801,16 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(cable8p_engineering_exact_tension_only_elastic_force, svv_1) \
     X(cable8p_engineering_exact_tension_only_elastic_tangent, svv_1) \
     X(cable8p_engineering_exact_tension_only_discrete_force, svvv_1) \
-    X(cable8p_engineering_exact_tension_only_step_stiffness, svvv_1) \
     X(cable8p_engineering_exact_tension_only_damping_force, svvvs_1) \
     X(cable8p_engineering_exact_tension_only_damping_tangent, svvvss_1) \
     X(cable8p_engineering_exact_tension_only_dissipation, svvvs_1) \
     X(cable8p_engineering_exact_tension_only_section_forces, ssvv_4) \
+    X(cable8p_engineering_exact_tabulated_stiffness, sv_1) \
+    X(cable8p_engineering_exact_tabulated_energy, svv_1) \
+    X(cable8p_engineering_exact_tabulated_elastic_force, svv_1) \
+    X(cable8p_engineering_exact_tabulated_elastic_tangent, svv_1) \
+    X(cable8p_engineering_exact_tabulated_discrete_force, svvv_1) \
+    X(cable8p_engineering_exact_tabulated_section_forces, ssvv_4) \
     X(rigid_place, vv_2) \
     X(rigid_point, vvv_4) \
     X(rigid_frame, v_2) \
@@ -1263,7 +1283,7 @@ const int fu_n_kernels = sizeof fu_kernels / sizeof fu_kernels[0];
 
 const fu_tables fu_all = {
     5, elements,
-    30, laws,
+    32, laws,
     2, bodys,
     2, modals,
     14, slides,

@@ -18,6 +18,7 @@ from funicular.kernels.elements import built_in
 from funicular.parts.cable_laws import possible_laws
 from funicular.parts.joint import DRIVEN, ROUGH_KINDS
 from funicular.parts.joint import JOINT_KINDS as JOINTS
+from shared_scenes import section_of
 
 TIME = 0.02
 """Duration of a run, s."""
@@ -478,6 +479,7 @@ def build(row: dict[str, str], folder: Path) -> fu.Scene:
         section = fu.GeneralSection(area=3e-4, second_moment_about_z=8e-9, torsion_constant=1.5e-8,
                                     shear_factors=(0.9, 0.9),
                                     torque_per_tension=1e-3 * helical)
+    section = section_of(row["law"], section)
     material = fu.Material(youngs_modulus=1e7, poisson_ratio=0.0, density=1000, thermal_expansion=1e-4,
                            **DAMPING[row["damping"]])
     shape = DRAWN[row["drawn"]] | GROWTH[row["growth"]]

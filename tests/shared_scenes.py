@@ -1,8 +1,9 @@
 """Small scenes that tests share: a straight cable and its riders; sizes and material of Table 1 by default."""
 
 import numpy as np
-from funicular import Material, Rectangle, Scene
+from funicular import Material, Rectangle, Scene, TensionTable
 from funicular.parts.paths import Variants, path_of
+from funicular.parts.section import Section
 
 TABLE_1 = Material(youngs_modulus=0.4e9, poisson_ratio=0.0, density=4200)
 SQUARE = Rectangle(height=0.05, width=0.05)
@@ -101,3 +102,9 @@ def block(s, speed=0.0, *, weight=MASS * G, slope=SLOPE, dim=3, scene=None, name
     if weight:
         scene.force(name, value=(weight * np.sin(slope), -weight * np.cos(slope), 0))
     return scene
+
+
+def section_of(law: str, section: Section) -> Section:
+    """Return the section, with a table of the axial force where the law takes one."""
+    table = TensionTable(strain=[-0.1, 0, 0.02, 0.1], force=[-270, 0, 63, 350])
+    return section.remade({"tension_table": table}) if law.endswith("tabulated") else section

@@ -2,7 +2,8 @@
 
 With mean x~ = (x0 + x1)/2 and difference dx = x1 - x0,
 
-    d(x + y) = dx + dy,   d(x y) = x~ dy + y~ dx,   d(1/x) = -dx/(x0 x1),   d(sqrt x) = dx/(sqrt x0 + sqrt x1)
+    d(x + y) = dx + dy,   d(x y) = x~ dy + y~ dx,   d(1/x) = -dx/(x0 x1),   d(sqrt x) = dx/(sqrt x0 + sqrt x1),
+    d(integral of a function by segments) = its mean from x0 to x1 dx
 
 hold exactly, divide by no difference, are symmetric in 0 and 1, and equal the derivative where the two states coincide.
 Carried through a law's stages they give D with U1 - U0 = sum D dI over its invariants I: the discrete
@@ -16,6 +17,7 @@ from collections.abc import Sequence
 import numpy as np
 import sympy as sp
 
+from ..codegen.piecewise import CubicIntegral, CubicMean
 from ..codegen.program import Program
 
 STATES = ("now", "next")
@@ -89,6 +91,9 @@ class _Along:
             return self._product(expr.args)
         if expr.is_Pow:
             return self._power(expr, *self.discrete.pair(_root(expr)))
+        if isinstance(expr, CubicIntegral):
+            table, at = expr.args
+            return self(at) * CubicMean(table, *self.discrete.pair(at))
         if any(self(symbol) != 0 for symbol in expr.free_symbols):
             raise ValueError(f"{expr}: a discrete gradient goes through sums, products, quotients and roots only")
         return sp.S.Zero

@@ -14,9 +14,11 @@ import sympy as sp
 from sympy.printing.c import C99CodePrinter
 from sympy.printing.precedence import PRECEDENCE
 
+from .piecewise import PiecewiseCubicBase
 from .program import two_cases
 
-_PRINTED = (sp.Symbol, sp.Rational, sp.Float, sp.Add, sp.Mul, sp.Pow, sp.sin, sp.cos, sp.exp, sp.Piecewise)
+_PRINTED = (sp.Symbol, sp.Rational, sp.Float, sp.Add, sp.Mul, sp.Pow, sp.sin, sp.cos, sp.exp, sp.Piecewise,
+            PiecewiseCubicBase)
 _ADD, _MUL, _ATOM = PRECEDENCE["Add"], PRECEDENCE["Mul"], PRECEDENCE["Atom"]
 
 
@@ -83,6 +85,10 @@ class KernelPrinter(C99CodePrinter):
 
     def _print_exp(self, expr: sp.Expr) -> str:
         return f"FU_EXP({self._print(expr.args[0])})"
+
+    def _print_PiecewiseCubicBase(self, expr: PiecewiseCubicBase) -> str:
+        name, entry = expr.table
+        return f"{expr.c_name}({name} + {entry}, {', '.join(self._print(x) for x in expr.args[1:])})"
 
     def _print_Piecewise(self, expr: sp.Piecewise) -> str:
         below, above, condition = two_cases(expr)

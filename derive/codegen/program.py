@@ -151,7 +151,7 @@ def _count(expr: sp.Expr, count: dict[str, int]) -> None:
     args = expr.args
     if expr.is_Piecewise:
         args = two_cases(expr)[:2]
-    elif isinstance(expr, (sp.sin, sp.cos, sp.exp)):
+    elif expr.is_Function:
         name = expr.func.__name__
         count[name] = count.get(name, 0) + 1
     elif expr.is_Add:

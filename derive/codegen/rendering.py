@@ -21,6 +21,7 @@ from .c_printer import c_expression
 from .described import described
 from .family import Family, FamilyError
 from .loops import sections
+from .piecewise import PiecewiseCubicBase
 from .program import Argument, Program
 from .provenance import short_hash
 from .sharing import Sections, header, share
@@ -254,6 +255,10 @@ def _entry(derived: Derived, table: Table) -> list[str]:
     return textwrap.wrap(f"{{{', '.join(values)}}},", WIDTH - 4, subsequent_indent=" ", break_long_words=False)
 
 
+LOOKUPS = {function.__name__ for function in PiecewiseCubicBase.__subclasses__()}
+"""Functions that find a segment, another one for each of several elements."""
+
+
 def block_kernels(derived: Derived) -> list[str]:
     """Return the names of a family's kernels that are also compiled for several elements or points at once."""
     if derived.family.role in POINT_BLOCKS:
@@ -262,7 +267,7 @@ def block_kernels(derived: Derived) -> list[str]:
     if derived.family.role != "law":
         return []
     hot = {f"{derived.family.name}_{kernel}" for kernel in BLOCKS}
-    return [p.name for p in derived.programs if p.name in hot
+    return [p.name for p in derived.programs if p.name in hot and not LOOKUPS & p.operations().keys()
             and MIN_OPERATIONS_PER_OUTPUT * p.outputs[0].size <= sum(p.operations().values()) <= MAX_BLOCK_OPERATIONS]
 
 

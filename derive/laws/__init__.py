@@ -4,8 +4,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from ..spec import ASSUMED_LAWS, CABLE_LAWS, TENSION_ONLY_LAWS, LawTraits
-from .cable import assumed, cable, tension_only
+from ..spec import ASSUMED_LAWS, CABLE_LAWS, TABULATED_LAWS, TENSION_ONLY_LAWS, LawTraits
+from .cable import assumed, cable, tabulated, tension_only
 from .cable import curved as curved_cable
 from .continuum import continuum
 from .continuum import curved as curved_continuum
@@ -23,7 +23,8 @@ def _measures(law: str) -> dict[str, str]:
 _CABLES: list[tuple[tuple[str, ...], Callable[..., Any], Callable[..., Any]]] = [
     (CABLE_LAWS, cable.Cable, cable.traits), (ASSUMED_LAWS, assumed.AssumedCable, assumed.traits),
     (CURVED_CABLE_LAWS, curved_cable.CurvedCable, curved_cable.traits),
-    (TENSION_ONLY_LAWS, tension_only.TensionOnlyCable, tension_only.traits)]
+    (TENSION_ONLY_LAWS, tension_only.TensionOnlyCable, tension_only.traits),
+    (TABULATED_LAWS, tabulated.TabulatedCable, tabulated.traits)]
 
 LAWS: dict[str, Callable[..., Any]] = {continuum.NAME: continuum.Continuum,
                                        curved_continuum.NAME: curved_continuum.CurvedContinuum}

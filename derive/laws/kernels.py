@@ -44,7 +44,7 @@ def _class(law: str | type) -> Any:
 
 def taken(element: Element, law: str | type) -> dict[str, str]:
     """Return by kernel the law of the element whose kernel a law takes: damping from the law that it is damped like, a
-    step's stiffness from the first cable with the same membrane, for that is all that it knows.
+    step's stiffness from the first cable whose strain is assumed, or is not, for that is all that it knows.
     """
     if not isinstance(law, str):  # a law of the user's has its own
         return {}
@@ -55,7 +55,8 @@ def taken(element: Element, law: str | type) -> dict[str, str]:
             found |= dict.fromkeys(kernels, like)
     if traits.kind == "cable":
         alike = (other for other in element.laws if isinstance(other, str)
-                 and (law_traits(other).kind, law_traits(other).membrane) == ("cable", traits.membrane))
+                 and law_traits(other).kind == "cable"
+                 and (law_traits(other).membrane == "assumed") == (traits.membrane == "assumed"))
         first = next(alike)
         found |= {} if first == law else {"step_stiffness": first}
     return found

@@ -9,6 +9,7 @@ import mpmath
 import numpy as np
 import sympy as sp
 
+from ..codegen.piecewise import NUMERICAL, PiecewiseCubicBase
 from ..codegen.program import Program, two_cases
 
 DIGITS = 50
@@ -33,6 +34,9 @@ def source(expr: sp.Expr) -> str:
         return f"sqrt({base})**{int(2 * expr.exp)}" if expr.exp.q == 2 else f"{base}**{int(expr.exp)}"
     if isinstance(expr, (sp.sin, sp.cos, sp.exp)):
         return f"{expr.func.__name__}({source(expr.args[0])})"
+    if isinstance(expr, PiecewiseCubicBase):
+        name, entry = expr.table
+        return f"{expr.c_name}({name}[{entry}:], {', '.join(source(x) for x in expr.args[1:])})"
     if expr.is_Piecewise:
         below, above, condition = two_cases(expr)
         return f"({source(below)} if {source(condition.lhs)} < {source(condition.rhs)} else {source(above)})"
@@ -54,7 +58,7 @@ class ExactProgram:
                    for a in self.program.outputs)
         lines.append(f"    return [{', '.join(results)}]")
         space = {"sqrt": mpmath.mp.sqrt, "sin": mpmath.mp.sin, "cos": mpmath.mp.cos, "exp": mpmath.mp.exp,
-                 "q": lambda p, q: mpmath.mpf(p) / q, "number": mpmath.mpf}
+                 "q": lambda p, q: mpmath.mpf(p) / q, "number": mpmath.mpf, **NUMERICAL}
         exec(compile("\n".join(lines), f"<{self.program.name} at {DIGITS} digits>", "exec"), space)
         kernel: Callable[..., Any] = space["kernel"]
         return kernel

@@ -39,7 +39,7 @@ class CableArrays:
                                   int(mesh.first_node(piece.first)) - piece.first)
                        for piece in cable.uniform_pieces)
         return CableModel(cable.name, cable.element, cable.kernel_law, mesh, first, pieces, self._mass, self._constants,
-                          (mesh.n_nodes, len(vectors), cable.dim), vectors, cable.library)
+                          (mesh.n_nodes, len(vectors), cable.dim), vectors, cable.library, gives_way=cable.gives_way)
 
     @cached_property
     def _mass(self) -> np.ndarray:

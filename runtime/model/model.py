@@ -85,7 +85,7 @@ class CableModel:
     pieces: in their order. m: (1 or elements, nodal vectors, nodal vectors) of an element; A: (1 or elements,
     constants). share: (vectors,) `Hull.share`, None where no coupling needs it. growth: dof of the growth factor of the
     stress-free length, -1 for none; growth_constants: A with negative bending stiffness, where a signal prescribes it
-    (engine/bodies/growth.c).
+    (engine/bodies/growth.c). gives_way: whether it resists hardly in compression.
     """
 
     name: str
@@ -102,6 +102,7 @@ class CableModel:
     share: np.ndarray | None = None
     growth: int = -1
     growth_constants: np.ndarray | None = None
+    gives_way: bool = False
 
     @property
     def n_elements(self) -> int:

@@ -54,6 +54,8 @@ class Cable(DrawnCable, CableFields):
     membrane: of cable elements, the representation of axial strain. "full" (the default): at every point.
         "tension_only": at every point, engineering strain, with 1e-4 of the axial stiffness in compression, where the
         force is at most that plus 2.5e-7 EA. "assumed": by Legendre modes of degree 0 to 2 ("cable18": 0 to 4).
+        "tabulated": at every point, engineering strain, the force by the ``tension_table`` of the section; the
+        material's Young's modulus gives bending and damping.
         "reduced": by modes of degree 0 and 1 ("cable18": 0 to 2), with 1 % of the axial stiffness on higher modes.
         Beside a point force on a taut rope, the tension of full and assumed strain oscillates, that of reduced strain
         hardly. Reduced strain is for small strain, stable up to a compression of 1 %, and needs about four times the
@@ -232,6 +234,7 @@ class Cable(DrawnCable, CableFields):
                                  f"got {ratio:.9g}", 'take law="structural", which needs E and G alone')
             (self._check_cable_section if kind.is_cable else self._check_beam_section)(piece.section)
             self._check_torque(piece.section, piece.material)
+            self._check_table(piece.section)
         return self
 
     def _check_cable_section(self, section: Section) -> None:
@@ -276,6 +279,16 @@ class Cable(DrawnCable, CableFields):
         if not EA * section.torque_per_tension**2 < GJ:
             raise ValueError(f"section.torque_per_tension must be smaller than √(GJ/EA) = {(GJ / EA) ** 0.5:.6g} m, so "
                              f"that strain and twist store energy, got {section.torque_per_tension:.6g} m")
+
+    def _check_table(self, section: Section) -> None:
+        """Raise ValueError unless a section has a table of the axial force exactly where the law takes one."""
+        takes = self.traits.membrane == "tabulated"
+        if takes and section.tension_table is None:
+            raise ValueError(f'law "{self.law}" needs section.tension_table',
+                             "give the section a fu.TensionTable(strain=..., force=...)")
+        if section.tension_table is not None and not takes:
+            raise ValueError(f'section.tension_table is given, but the law "{self.law}" of {self.element} takes none',
+                             'leave it out, or take element="cable12" or "cable8p" with membrane="tabulated"')
 
     def mesh_entries(self, elements: int) -> dict[str, Any]:
         """Return the entries of the cable with another number of elements.

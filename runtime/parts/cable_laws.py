@@ -12,7 +12,7 @@ from .validation import shown
 
 DEFAULT_ELEMENT = "beam24"
 MEASURES = {"strain": ("green", "engineering"), "curvature": ("exact", "linear"),
-            "membrane": ("full", "assumed", "reduced", "tension_only")}
+            "membrane": ("full", "assumed", "reduced", "tension_only", "tabulated")}
 """The keywords that name the law of a cable by its measures, see `Cable`, with their values; the first is the default.
 """
 
@@ -39,7 +39,7 @@ def chosen(kind: ElementKind, data: dict[str, Any]) -> str | None:
             raise ValueError(f"strain, curvature and membrane are for cable elements, {element} is a beam",
                              "leave them out, or take " + others(kind.dim, cable=True))
         default = {name: values[0] for name, values in MEASURES.items()}
-        if measures.get("membrane") == "tension_only":
+        if measures.get("membrane") in ("tension_only", "tabulated"):
             default["strain"] = "engineering"
         by_measures = law_of_measures(**default | measures)
         if law not in (None, by_measures):

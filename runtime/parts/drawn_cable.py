@@ -140,9 +140,10 @@ class DrawnCable(Fields):
         """
         pieces = self.uniform_pieces
         stiffness = [section_stiffness(self.stiffness_law, piece.section, piece.material, self.dim) for piece in pieces]
-        counted = slice(0, 1) if self.kind_of_element.is_cable else slice(None)
+        if self.kind_of_element.is_cable:
+            stiffness = [np.delete(S, 1) for S in stiffness]  # EI
         return tuple(piece.first for piece, before, own in zip(pieces[1:], stiffness, stiffness[1:], strict=False)
-                     if piece.hinge or not np.array_equal(before[counted], own[counted]))
+                     if piece.hinge or not np.array_equal(before, own))
 
     @property
     def hinges(self) -> tuple[int, ...]:
@@ -159,6 +160,12 @@ class DrawnCable(Fields):
     def traits(self) -> LawTraits:
         """Return the properties of the law of its kernels."""
         return self.kind_of_element.laws[self.kernel_law]
+
+    @property
+    def gives_way(self) -> bool:
+        """Return whether it resists hardly in compression."""
+        tables = [piece.section.tension_table for piece in self.uniform_pieces]
+        return self.traits.membrane == "tension_only" or all(table is not None and table.only_pulls for table in tables)
 
     def in_plane(self, vectors: np.ndarray) -> np.ndarray:
         """Return directions (..., 3) along the ground's axes as (..., dim) along those of its plane."""

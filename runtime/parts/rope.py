@@ -194,6 +194,14 @@ class Rope(Part):
         return self
 
     @model_validator(mode="after")
+    def _has_a_linear_law(self) -> "Rope":
+        for name in ("torque_per_tension", "tension_table"):
+            if getattr(self.section, name):
+                raise ValueError(f"section.{name} is given, but ropes take EA and EI alone",
+                                 "leave it out, or take a cable")
+        return self
+
+    @model_validator(mode="after")
     def _fits_its_sheaves(self) -> "Rope":
         for wheel in self.wheels:
             if wheel.radius <= self.radius:

@@ -12,6 +12,7 @@ from pydantic import Field, model_validator
 from ..errors import SceneError
 from .part import Family, Part
 from .schemas import checked, list_schema
+from .tension_table import TensionTable
 from .validation import finite, not_negative, positive, show, vector
 
 Length = Annotated[float, positive("m")]
@@ -34,6 +35,7 @@ class Section(Part):
     shear_factors: (ky, kz), in the place of those of the shape
     torque_per_tension: of helical wires, for element="beam24" with law="structural": torque over tension where the rope
         cannot turn, m; positive for a right-hand lay. Tension is EA (strain + it twist), torque EA it strain + GJ twist
+    tension_table: of ropes, for membrane="tabulated": the axial force by strain, in the place of EA times the strain
     """
 
     tag = "shape"
@@ -42,6 +44,7 @@ class Section(Part):
     given_shear_factors: Annotated[tuple[float, float], checked(_factors, list_schema("", 2, 2))] | None = Field(
         None, alias="shear_factors")
     torque_per_tension: Annotated[float, finite("m")] = 0.0
+    tension_table: TensionTable | None = None
 
     def moments(self) -> np.ndarray:
         """Return (6,): [∫dA, ∫y²dA, ∫z²dA, ∫y⁴dA, ∫y²z²dA, ∫z⁴dA] in m², m⁴, m⁴, m⁶, m⁶, m⁶."""

@@ -15,15 +15,17 @@ from ..base.deferred import dataclass
 from ..kernels.elements import built_in_laws
 from .material import Material
 from .section import Section
+from .tension_table import RESIDUAL_STIFFNESS, TRANSITION_STRAIN, TensionTable
 
 
 def section_stiffness(law: str, section: Section, material: Material, dim: int = 3) -> np.ndarray:
     """Return S of an elastic law, in N times even powers of m.
 
     law: of this package, or one of `variants`; dim: 2 for a planar element, else 3. Cables: (2,) [EA, EI], (3,) with an
-    assumed axial strain, see `_assumed`, (4,) without stiffness in compression, see `_tension_only`. Continuum: (9, 6),
-    planar (4, 6), the integrals over the section of D11, D22, D33, D12, D13, D23, G12, G13, G23 (planar: D11, D22, D12,
-    G12) times 1, y², z², y⁴, y²z², z⁴. Structural: (10,), planar (4,), see `_structural`.
+    assumed axial strain, see `_assumed`, (4,) without stiffness in compression, see `_tension_only`, (147,) by a table,
+    see `_tabulated`. Continuum: (9, 6), planar (4, 6), the integrals over the section of D11, D22, D33, D12, D13, D23,
+    G12, G13, G23 (planar: D11, D22, D12, G12) times 1, y², z², y⁴, y²z², z⁴. Structural: (10,), planar (4,), see
+    `_structural`.
     """
     if law in variants():
         return variants()[law].stiffness(section, material, dim)
@@ -63,6 +65,11 @@ class _Doubled:
     def torque_per_tension(self) -> float:
         """Return its torque per tension in m."""
         return 2.0 * self.section.torque_per_tension
+
+    @property
+    def tension_table(self) -> TensionTable | None:
+        """Return its table, of forces that do not change with its size."""
+        return self.section.tension_table
 
 
 @dataclass(frozen=True)
@@ -120,17 +127,21 @@ def _assumed(section: Section, material: Material, dim: int) -> np.ndarray:
     return np.array([EA, EI, EA])
 
 
-RESIDUAL_STIFFNESS, TRANSITION_STRAIN = 1e-4, 1e-6
-"""Without stiffness in compression: part of EA that remains there, and the strain of the transition."""
-
-
 def _tension_only(section: Section, material: Material, dim: int) -> np.ndarray:
     """Return EA, EI, the part of EA that remains in compression, and the strain of the transition."""
     return np.array([*_cable(section, material, dim), RESIDUAL_STIFFNESS, TRANSITION_STRAIN])
 
 
+def _tabulated(section: Section, material: Material, dim: int) -> np.ndarray:
+    """Return EA, EI, and the segments of the axial force."""
+    assert section.tension_table is not None, f"{section.where} has no tension_table"
+    return np.concatenate([_cable(section, material, dim), section.tension_table.numbers()])
+
+
 def compressive_stiffness(membrane: str, section: Section, material: Material) -> float:
     """Return the axial stiffness of a cable in compression, in N."""
+    if section.tension_table is not None:
+        return section.tension_table.compressive_stiffness
     part = RESIDUAL_STIFFNESS if membrane == "tension_only" else 1.0
     return part * float(_cable(section, material, 3)[0])
 
@@ -194,5 +205,5 @@ def _elasticity(material: Material, dim: int) -> np.ndarray:
 
 _BY_KIND: dict[tuple[str, str], Callable[[Section, Material, int], np.ndarray]] = {
     ("continuum", ""): _continuum, ("structural", ""): _structural, ("cable", "full"): _cable,
-    ("cable", "assumed"): _assumed, ("cable", "tension_only"): _tension_only}
+    ("cable", "assumed"): _assumed, ("cable", "tension_only"): _tension_only, ("cable", "tabulated"): _tabulated}
 """By kind of the law and membrane, see `LawTraits`."""

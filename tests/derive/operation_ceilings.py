@@ -49,11 +49,19 @@ CEILINGS = {
     },
     "cable12_engineering_exact_tension_only": {
         "stiffness": 0, "energy": 319, "elastic_force": 629, "elastic_tangent": 2164, "discrete_force": 1140,
-        "step_stiffness": 161, "section_forces": 290, "damping_force": 519, "damping_tangent": 1974, "dissipation": 394
+        "section_forces": 290, "damping_force": 519, "damping_tangent": 1974, "dissipation": 394
+    },
+    "cable12_engineering_exact_tabulated": {
+        "stiffness": 0, "energy": 260, "elastic_force": 505, "elastic_tangent": 1750, "discrete_force": 911,
+        "section_forces": 260
+    },
+    "cable8p_engineering_exact_tabulated": {
+        "stiffness": 0, "energy": 203, "elastic_force": 385, "elastic_tangent": 1059, "discrete_force": 704,
+        "section_forces": 184
     },
     "cable8p_engineering_exact_tension_only": {
         "stiffness": 0, "energy": 262, "elastic_force": 509, "elastic_tangent": 1473, "discrete_force": 933,
-        "step_stiffness": 127, "section_forces": 214, "damping_force": 370, "damping_tangent": 1082, "dissipation": 286
+        "section_forces": 214, "damping_force": 370, "damping_tangent": 1082, "dissipation": 286
     },
     "cable12_green_exact": {
         "stiffness": 0, "energy": 251, "elastic_force": 476, "elastic_tangent": 1681, "damping_force": 423,

@@ -7,7 +7,7 @@ from funicular.derive.algebra.gram import Gram
 from funicular.derive.catalogue import families
 from funicular.derive.elements import ELEMENTS
 from funicular.derive.laws.continuum.continuum import Form
-from funicular.derive.spec import ASSUMED_LAWS, CABLE_LAWS, Element, l, x, y, z
+from funicular.derive.spec import ASSUMED_LAWS, CABLE_LAWS, MAX_SEGMENTS, Element, l, x, y, z
 from funicular.derive.verify.samples.element import element_state, loads
 from funicular.derive.verify.samples.shapes import reference, rotation, section
 from funicular.generated import described, kernels
@@ -31,8 +31,11 @@ def kernel(*name: str):
 
 
 def cable_stiffness(law: str, EA: float, EI: float) -> np.ndarray:
-    """Return S of a law of cables: upper modes of an assumed strain also have EA; a share of EA remains in compression.
+    """Return S of a law of cables: upper modes of an assumed strain also have EA; a share of EA remains in compression;
+    a table has one straight segment.
     """
+    if law.endswith("_tabulated"):
+        return np.array([EA, EI, 1, 0, 0, 0, EA, *[0] * (6 * MAX_SEGMENTS - 4)])
     more = [EA] if law.endswith("_assumed") else [LEFT, TRANSITION] if law.endswith("_tension_only") else []
     return np.array([EA, EI, *more])
 

@@ -10,15 +10,15 @@ from funicular.derive.codegen import drift
 from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
 from funicular.model.build import build
-from shared_scenes import cable_scene
+from shared_scenes import cable_scene, section_of
 
 ELEMENTS = 7  # a block and a rest
 SAME_BITS = platform.machine() in ("x86_64", "AMD64")  # no contraction to fused operations there
 CABLE = [{"strain": strain, "curvature": curvature, "membrane": membrane} for strain in ("green", "engineering")
          for curvature in ("exact", "linear") for membrane in ("full", "assumed")]
 BEAM = [{"law": "continuum"}, {"law": "structural"}]
-TENSION_ONLY = [{"membrane": "tension_only"}]
-STRAIGHT = {"cable12": CABLE + TENSION_ONLY, "cable8p": CABLE + TENSION_ONLY,
+NONLINEAR = [{"membrane": "tension_only"}, {"membrane": "tabulated"}]
+STRAIGHT = {"cable12": CABLE + NONLINEAR, "cable8p": CABLE + NONLINEAR,
             "cable18": [kind for kind in CABLE if kind["curvature"] == "exact"],
             "beam24": BEAM, "beam12p": BEAM}
 CURVED = {"cable12": [{"strain": "green"}, {"strain": "engineering"}], "beam24": [{"law": "continuum"}],
@@ -34,7 +34,8 @@ def arc(u):
 def scene(element: str, law: dict, curved: bool, uneven: bool = False) -> Scene:
     shape = {"curve": arc} if curved else {}
     up = {"up": (0, 0, 1)} if element == "beam24" and curved else {}
-    made = cable_scene(pins=(0.0,), elements=ELEMENTS, element=element, section=Rectangle(height=0.02, width=0.02),
+    section = section_of(law.get("membrane", ""), Rectangle(height=0.02, width=0.02))
+    made = cable_scene(pins=(0.0,), elements=ELEMENTS, element=element, section=section,
                        material=Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1000, damping_time=1e-2),
                        **shape, **up, **law)
     cable = made.cables["wire"]

@@ -7,6 +7,7 @@ from funicular.derive.catalogue import families
 from funicular.kernels.elements import built_in
 from funicular.parts.cable_laws import possible_laws
 from numpy.testing import assert_allclose
+from shared_scenes import section_of
 
 DAMPED = Material(youngs_modulus=1e7, poisson_ratio=0.0, density=1000, damping_time=5e-3)
 EVERY = [(element, law, drawn) for element, kind in built_in().items() for law in possible_laws(kind)
@@ -17,8 +18,8 @@ def swinging(element: str, law: str, drawn: str) -> Scene:
     scene = Scene(gravity=(0, -9.81, 0))
     shape = {"start": (0, 0, 0), "end": (1, 0, 0)} if drawn == "straight" else {
         "points": [(0, 0, 0), (0.5, 0.1, 0), (1, 0, 0)]}
-    wire = scene.cable("wire", **shape, elements=3, element=element, law=law, section=Circle(radius=0.01),
-                       material=DAMPED)
+    wire = scene.cable("wire", **shape, elements=3, element=element, law=law,
+                       section=section_of(law, Circle(radius=0.01)), material=DAMPED)
     scene.pin(wire, s=0)
     scene.force(wire, s=wire.length, value=(20, 0, 0))
     return scene

@@ -204,9 +204,9 @@ CONSTANTS = {"area": 1, "second_moment_about_z": 1}
      'second moments, got (1, 2) m⁴; take a square, a circle or a tube, or element="beam24"'),
     ("cable12", Circle(radius=1), {"law": "structural"}, 'law "structural" is not possible for cable12; possible: '
      "green_exact, green_linear, engineering_exact, engineering_linear, green_exact_assumed, green_linear_assumed, "
-     "engineering_exact_assumed, engineering_linear_assumed, engineering_exact_tension_only, green_exact_reduced, "
-     "green_linear_reduced, "
-     "engineering_exact_reduced, engineering_linear_reduced"),
+     "engineering_exact_assumed, engineering_linear_assumed, engineering_exact_tension_only, "
+     "engineering_exact_tabulated, green_exact_reduced, green_linear_reduced, engineering_exact_reduced, "
+     "engineering_linear_reduced"),
     ("beam24", Circle(radius=1), {"law": "green_exact"},
      'law "green_exact" is not possible for beam24; possible: continuum, structural, poisson_split'),
     ("beam24", Circle(radius=1), {"strain": "green"},

@@ -8,6 +8,7 @@ from funicular.model.cables import arrays_of
 from funicular.parts.cable_laws import possible_laws
 from funicular.parts.in_plane import in_plane
 from funicular.solve.adjustment.cable_changes import Own, by_length, elastic_force, same_points
+from shared_scenes import section_of
 
 LAWS = [(element, law) for element, kind in of_library(None).items() for law in possible_laws(kind)]
 MATERIAL = fu.Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1500.0)
@@ -17,8 +18,8 @@ BOW = (0, 0, 0), (1, 0.3, 0), (2, 0.4, 0), (3, 0.3, 0), (4, 0.0, 0)
 def cable_of(element, law, stretch, shape=None):
     """Return a cable, stretched as it is drawn."""
     place = {"start": (0, 0, 0), "end": (4, 0.3, 0)} if shape is None else {"points": shape}
-    given = {**place, "elements": 5, "element": element, "law": law, "section": fu.Circle(radius=0.01),
-             "material": MATERIAL}
+    given = {**place, "elements": 5, "element": element, "law": law,
+             "section": section_of(law, fu.Circle(radius=0.01)), "material": MATERIAL}
     drawn = fu.Scene().cable("wire", **given).length
     scene = fu.Scene()
     scene.cable("wire", **given, rest_length=drawn / stretch)
@@ -78,7 +79,7 @@ def test_so_they_do_where_a_cable_just_becomes_slack(element, strain):
     assert np.abs(found - far).max() > 0.01 * np.abs(far).max()  # of steps beyond the strain at which it becomes slack
 
 
-@pytest.mark.parametrize(("element", "law"), LAWS)
+@pytest.mark.parametrize(("element", "law"), [of for of in LAWS if not of[1].endswith("tabulated")])
 def test_forces_are_linear_in_youngs_modulus(element, law):
     """At a given Poisson ratio this holds for every law, so that no short step is needed."""
     cable = cable_of(element, law, 1.01)

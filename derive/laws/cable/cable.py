@@ -80,6 +80,7 @@ class Cable(Damping):
 
     source, set_up_kernel = SOURCE, "stiffness"
     stiffness_units, stiffness_doc = "N, N m^2", "axial and bending stiffness EA, EI"
+    axial_name = "EA"
 
     def __init__(self, gram: Gram, strain: str, curvature: str):
         self.gram, self.strain, self.curvature = gram, strain, curvature
@@ -150,7 +151,11 @@ class Cable(Damping):
         """Return the energy per length whose derivative is the membrane's force at X, what is constant in it, and the
         strain.
         """
-        return self.twice_axial_energy(program, "", S, S[0], strain) / 2, [], strain
+        return self.twice_axial_energy(program, "", S, self.axial_factor(S), strain) / 2, [], strain
+
+    def axial_factor(self, A: np.ndarray) -> sp.Expr:
+        """Return the factor of the axial energy."""
+        return A[0]
 
     def twice_axial_energy(self, program: Program, tag: str, A: np.ndarray, stiffness: sp.Expr,
                            strain: sp.Expr) -> sp.Expr:
@@ -186,11 +191,12 @@ class Cable(Damping):
     def _terms(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> Iterator[Term]:
         """Yield the energy point by point."""
         program.stage("strain at the quadrature points")
-        EA, EI = program.define("EA_l", A[0] / (2 * w)), program.define("EI_l", 2 * A[1] * w)
+        EA = program.define(f"{self.axial_name}_l", self.axial_factor(A) / (2 * w))
+        EI = program.define("EI_l", 2 * A[1] * w)
         if self.curvature == "exact":
             points = self.bending_points
             every = self._at_points(program, "", "abc", points, c)
-            weighted = [[self._weighted(program, points, g, *stiff) for stiff in (("EA", EA), ("EI", EI))]
+            weighted = [[self._weighted(program, points, g, *stiff) for stiff in ((self.axial_name, EA), ("EI", EI))]
                         for g in range(len(points))]
             for g, ((invariants, vectors, series), (axial, bending)) in enumerate(zip(every, weighted, strict=True)):
                 strain, k2, _ = self.measures(program, f"_{g}", invariants, bending)
@@ -200,7 +206,7 @@ class Cable(Damping):
         points = self.axial_points
         for g, (invariants, *at) in enumerate(self._at_points(program, "", "a", points, c)):
             strain = self._axial_strain(program, f"_{g}", *invariants)
-            axial = self._weighted(program, points, g, "EA", EA)
+            axial = self._weighted(program, points, g, self.axial_name, EA)
             yield Term("a", self.twice_axial_energy(program, f"_{g}", A, axial, strain), invariants, *at)
         program.stage("curvature at the quadrature points")
         points = self.bending_points

@@ -51,12 +51,22 @@ def membrane_energy(law: str, strain: Any, s: Any) -> Any:
     """Return the energy per length of an axial strain. A cable that gives way in compression has a part of EA left
     there, and of the rest the force whose energy is (strain^2 + strain hypot(strain, t) - strain t)/4 times it.
     """
-    EA = s["S"][0]
-    if TRAITS[law].membrane != "tension_only":
+    EA, membrane = s["S"][0], TRAITS[law].membrane
+    if membrane == "tabulated":
+        return _work(s["S"][2:], strain)
+    if membrane != "tension_only":
         return EA * strain**2 / 2
     left, transition = s["S"][2:]
     rest = strain**2 + strain * mp.sqrt(strain**2 + transition**2) - strain * transition
     return EA * (left * strain**2 / 2 + (1 - left) * rest / 4)
+
+
+def _work(table: np.ndarray, strain: Any) -> Any:
+    """Return the integral of a force by cubic segments, from the start of the first one."""
+    segments = np.array(table[1 : 1 + 6 * int(table[0])]).reshape(-1, 6)
+    held = [k for k, segment in enumerate(segments) if k == 0 or segment[0] <= strain][-1]
+    start, energy, *force = segments[held]
+    return energy + sum(factor * (strain - start) ** (k + 1) / (k + 1) for k, factor in enumerate(force))
 
 
 def axial_points(element: Element, law: str) -> int:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ...codegen.family import LawFamily
+from ...codegen.piecewise import SEGMENT
 from ...laws import kernels as law_kernels
-from ...spec import LawTraits
+from ...spec import MAX_SEGMENTS, LawTraits
 from ..exact import ExactProgram
 from ..numbers import Numbers, State
 from ..references import curved_continuum
@@ -60,9 +61,23 @@ def section_stiffness(traits: LawTraits, dim: int, moments: np.ndarray,
     if traits.kind == "cable":
         S = 53.0 * moments[:2]
         more = {"assumed": [0.6 * S[0]], "tension_only": [0.2, 0.1]}.get(traits.membrane, [])
+        if traits.membrane == "tabulated":
+            more = _segments(S[0], random)
         return {"S": np.array([*S, *more])}
     pairs = dim * (dim - 1) // 2
     D, on_axis_alone = (np.concatenate([random.uniform(40, 60, dim), random.uniform(5, 15, pairs),
                                         random.uniform(10, 20, pairs)]) for _ in range(2))
     return {"S": np.outer(D, moments) + np.outer(on_axis_alone, moments * [1, 0, 0, 0, 0, 0]), "D": D,
             "D_axis": on_axis_alone}
+
+
+def _segments(EA: float, random: np.random.Generator) -> list[float]:
+    """Return cubic segments of an axial force with kinks of the slope, from strain 0."""
+    starts = np.linspace(0, 0.4, MAX_SEGMENTS - 1)
+    found, integral, value = [], 0.0, 0.0
+    for start, step in zip(starts, [*np.diff(starts), 0.0], strict=True):
+        slope, c2, c3 = EA * random.uniform(0.5, 1.5), EA * random.uniform(-1, 1), EA * random.uniform(-5, 5)
+        found += [start, integral, value, slope, c2, c3]
+        integral += step * (value + step * (slope / 2 + step * (c2 / 3 + step * c3 / 4)))
+        value += step * (slope + step * (c2 + step * c3))
+    return [len(starts), *found, *[0.0] * SEGMENT]

@@ -79,7 +79,7 @@ cdef class Translation(Arrays):
             c.lengths, c.l_stride = self._doubles(mesh.lengths), 0 if mesh.is_even else 1
             c.nodes = NULL if mesh.is_even else self._doubles(mesh.boundaries)
             c.share = NULL if cable.share is None else self._doubles(cable.share)
-            c.tension_only = cable.law.endswith("tension_only")
+            c.tension_only = cable.gives_way
             c.growth, c.orders = cable.growth, self._ints(cable.orders)
             c.growth_constants = NULL if cable.growth_constants is None else self._doubles(cable.growth_constants)
             c.per_node, c.n_nodes = c.kernel.vectors * c.kernel.dim, mesh.n_nodes

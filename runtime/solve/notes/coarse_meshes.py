@@ -57,7 +57,7 @@ class _Strains:
         self.half_stiffness = 0.5 * self.EA * self.h
         self.supported = sorted(int(cable.mesh.boundary_of_node[self.part.node(each.s)])
                                 for each in scene.supports if each.cable == cable.name)
-        self.is_slack_in_compression = self.part.traits.membrane == "tension_only"
+        self.is_slack_in_compression = self.part.gives_way
         if self.part.is_curved:
             self.drawn = self._strain(self.part.rest_nodal_vectors[None])
         self.scene = scene
@@ -206,7 +206,8 @@ class CoarseMeshes(Note):
                 groups |= dict.fromkeys(whole, whole)
         laws = {name: cable.traits for name, cable in scene.cables.items()}
         strains = {cable.name: _Strains(scene, self.model, cable) for cable in self.model.cables
-                   if laws[cable.name].kind != "structural" and laws[cable.name].membrane != "assumed"}
+                   if laws[cable.name].kind != "structural"
+                   and laws[cable.name].membrane not in ("assumed", "tabulated")}
         lines = {id(group): [each for name, each in strains.items() if name in group] for group in groups.values()}
         self._lines = [_Line(line) for line in lines.values() if line]
 

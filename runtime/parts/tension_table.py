@@ -1,0 +1,113 @@
+"""Axial forces of cables by their strain, from tables: monotone cubic segments."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Annotated
+
+import numpy as np
+from pydantic import model_validator
+
+from ..kernels.elements import part_of_manifest
+from .part import Part
+from .validation import check_function, list_of, show
+
+MAX_POINTS = 20
+RESIDUAL_STIFFNESS, TRANSITION_STRAIN = 1e-4, 1e-6
+"""In compression of a cable that gives way there: part of the stiffness that remains, and the strain of the transition.
+"""
+
+
+class TensionTable(Part):
+    """Axial force of a cable by its engineering strain, as from a test machine, for membrane="tabulated".
+
+    Between the points it is a cubic whose slopes keep it increasing (Fritsch & Butland, SIAM J. Sci. Stat. Comput. 5
+    (1984) 300-304), beyond them straight. A table that begins at 0 is of a cable that only pulls: in compression it
+    keeps 1e-4 of the stiffness.
+
+    strain: increasing, one of them 0; at most 20
+    force: N, increasing, 0 at the strain 0
+
+    >>> import funicular as fu
+    >>> fu.TensionTable(strain=[0, 0.01, 0.03], force=[0, 2e3, 1e4]).force
+    (0.0, 2000.0, 10000.0)
+    """
+
+    strain: Annotated[tuple[float, ...], list_of("", least=2)]
+    force: Annotated[tuple[float, ...], list_of("N", least=2)]
+
+    @model_validator(mode="after")
+    def _is_a_law(self) -> TensionTable:
+        check_function(self.strain, "strain", "", self.force, "force")
+        if len(self.strain) > MAX_POINTS:
+            raise ValueError(f"has {len(self.strain)} points, at most {MAX_POINTS} are possible",
+                             "give fewer points where the force is straight")
+        if not np.diff(self.strain).min() > TRANSITION_STRAIN:
+            raise ValueError(f"strain must increase by more than {TRANSITION_STRAIN:g} between points")
+        if not self.strain[0] > -1:
+            raise ValueError(f"strain must be above -1, got {self.strain[0]:g}")
+        for before, after in pairwise(self.force):
+            if not after > before:
+                raise ValueError(f"force must increase with strain, got {show(after, 'N')} after {show(before, 'N')}",
+                                 "a cable whose force falls has no stable length: leave out the points beyond the "
+                                 "largest force")
+        if 0.0 not in self.strain or not self.strain[-1] > 0:
+            raise ValueError(f"strain must contain 0 and end above it, got {show(self.strain)}",
+                             "add the point of strain 0 and force 0")
+        if (at_rest := self.force[self.strain.index(0.0)]) != 0.0:
+            raise ValueError(f"force must be 0 at the strain 0, got {show(at_rest, 'N')}",
+                             "count strain from the length without force, and give that as rest_length")
+        return self
+
+    @property
+    def only_pulls(self) -> bool:
+        """Return whether the cable gives way in compression."""
+        return self.strain[0] == 0.0
+
+    @property
+    def compressive_stiffness(self) -> float:
+        """Return the slope of the force in compression in N: at strain 0, or what is left of it."""
+        strain, _, slopes = self._points()
+        return float(slopes[0] if self.only_pulls else np.interp(0.0, strain, slopes))
+
+    def _points(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return strain, force and slope where segments meet."""
+        x, N = np.array(self.strain), np.array(self.force)
+        slopes = monotone_slopes(x, N)
+        if not self.only_pulls:
+            return x, N, slopes
+        left = RESIDUAL_STIFFNESS * N[1] / x[1]
+        below = -TRANSITION_STRAIN * (left + slopes[0]) / 2
+        return np.array([-TRANSITION_STRAIN, *x]), np.array([below, *N]), np.array([left, *slopes])
+
+    def numbers(self) -> np.ndarray:
+        """Return the numbers of its segments, as kernels take them (derive/algebra/piecewise.py)."""
+        x, N, slopes = self._points()
+        h, secants = np.diff(x), np.diff(N) / np.diff(x)
+        c2 = (3 * secants - 2 * slopes[:-1] - slopes[1:]) / h
+        c3 = (slopes[:-1] + slopes[1:] - 2 * secants) / h**2
+        energy = np.cumsum([0.0, *(h * (N[:-1] + h * (slopes[:-1] / 2 + h * (c2 / 3 + h * c3 / 4))))])
+        energy -= energy[np.flatnonzero(x == 0.0)[0]]
+        zero = np.zeros(len(x))
+        c2, c3 = np.array([0.0, *c2, 0.0]), np.array([0.0, *c3, 0.0])
+        segments = np.stack([np.append(of[0], of) for of in (x, energy, N, slopes, zero, zero)], axis=1)
+        segments[:, 4], segments[:, 5] = c2, c3
+        found = np.zeros(1 + segments.shape[1] * part_of_manifest("max_segments"))
+        found[0], found[1 : 1 + segments.size] = len(segments), segments.ravel()
+        return found
+
+
+def monotone_slopes(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Return slopes at the points of an increasing function, with which its cubics increase."""
+    h, secants = np.diff(x), np.diff(y) / np.diff(x)
+    if len(h) == 1:
+        return np.array([secants[0]] * 2)
+    weights = np.stack([2 * h[1:] + h[:-1], h[1:] + 2 * h[:-1]])
+    within = weights.sum(axis=0) / (weights[0] / secants[:-1] + weights[1] / secants[1:])
+    return np.array([_end(h[0], h[1], secants[0], secants[1]), *within, _end(h[-1], h[-2], secants[-1], secants[-2])])
+
+
+def _end(h: float, beyond: float, secant: float, next_secant: float) -> float:
+    """Return the slope of the parabola through three points at the first one, from none to three times the secant."""
+    slope = ((2 * h + beyond) * secant - h * next_secant) / (h + beyond)
+    return float(min(max(slope, 0.0), 3 * secant))
