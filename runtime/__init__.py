@@ -45,6 +45,7 @@ from .parts.solids import Sphere as Sphere
 from .parts.surface_shapes import Capsule as Capsule
 from .parts.surface_shapes import HeightField as HeightField
 from .parts.surface_shapes import Plane as Plane
+from .parts.tapered import tapered as tapered
 from .parts.tension_table import TensionTable as TensionTable
 from .parts.velocity_table import VelocityTable as VelocityTable
 from .results.combination import combine as combine

@@ -290,3 +290,47 @@ def test_a_hinge_resumes_and_is_refused_where_something_slides(tmp_path):
                  "of the first piece"):
         scene.cable("v", start=(0, 0, 0), end=(5, 0, 0), element="cable8p", rest="straight", pieces=[fu.Piece(
             length=5.0, section=SECTION, material=SOFT, elements=2, hinge=True)])
+
+
+TAPER = 0.1, 0.05
+"""Diameters at the start and at the end of a cone, m."""
+
+
+def cone(tol: float, element: str = "cable8p") -> fu.Scene:
+    """Return a cantilever of 2 m, a cone, clamped at its thick start."""
+    scene = fu.Scene(gravity=(0, 0, 0))
+    scene.cable("w", start=(0, 0, 0), end=(2, 0, 0), element=element, rest="straight", **law_of(element),
+                up=DIRECTORS.get(element, (0, 1, 0)), pieces=fu.tapered([0, 2], TAPER, material=STIFF, tol=tol))
+    scene.clamp("w", s=0)
+    return scene
+
+
+@pytest.mark.parametrize("element", ["cable12", "cable8p"])
+@pytest.mark.parametrize("tol", [0.04, 0.01, 0.0025])
+def test_a_cone_by_pieces(element, tol):
+    """Elongation 4 F L/(pi E d0 d1) and deflection 64 F L^3/(3 pi E d0^3 d1) err by less than tol."""
+    (d0, d1), E, force = TAPER, STIFF.youngs_modulus, 1e-3
+    for along, closed in (((force, 0, 0), 4 * 2 / (d0 * d1)), ((0, force, 0), 64 * 2**3 / (3 * d0**3 * d1))):
+        scene = cone(tol, element)
+        scene.force("w", s=2, value=along)
+        moved = float(np.linalg.norm(scene.equilibrium()["w.position"][-1] - (2, 0, 0)))
+        assert moved == pytest.approx(force * closed / (np.pi * E), rel=tol)
+    mass = np.pi / 12 * 2 * (d0**2 + d0 * d1 + d1**2) * STIFF.density
+    assert scene.cables["w"].mass == pytest.approx(mass, rel=tol / 6)
+
+
+def test_a_tapered_tube_and_refusals():
+    pieces = fu.tapered([0, 1, 3], [0.2, 0.1, 0.1], inner_diameter=[0.16, 0.0, 0.0], material=STIFF, elements=2)
+    assert pieces[0].section.inner_radius == pytest.approx(0.08 * 0.95)
+    assert isinstance(pieces[-1].section, fu.Circle) and pieces[-1].length == 2
+    assert sum(piece.length for piece in pieces) == pytest.approx(3)
+    for given, message in (
+            (([0, 1], [0.1]), "s and diameter must be of equal length, got 2 and 1"),
+            (([1, 2], [0.1, 0.1]), "s must begin at 0 and have 2 places or more, got (1, 2) m"),
+            (([0, 1], [0.1, 0.0]), "must be positive, got 0 m"),
+            (([0, 1], [1.0, 1e-3]), "takes more than 1000 pieces; give a larger tol"),
+            (([0, 1, 1], [0.1, 0.1, 0.1]), "s must increase, got 1 m after 1 m")):
+        with refused(f"tapered: {message}"):
+            fu.tapered(*given, material=STIFF)
+    with pytest.raises(fu.SceneError, match="inner_radius"):
+        fu.tapered([0, 1], [0.1, 0.1], inner_diameter=[0.2, 0.2], material=STIFF)

@@ -28,7 +28,8 @@ Printed by `python -m funicular.guides.site.printed` from signatures and docstri
 scene](parts.md) have a page of their own.
 """
 
-FUNCTIONS = ("load_scene", "load_run", "combine", "run_many", "sweep", "sweep_cost", "load_sweep", "bundled_scenes")
+FUNCTIONS = ("load_scene", "load_run", "combine", "run_many", "sweep", "sweep_cost", "load_sweep", "bundled_scenes",
+             "tapered", "read_moordyn")
 CLASSES: dict[str, tuple[type, ...]] = {
     "Scene": (funicular.Scene, DescribedScene), "Run": (Run,), "Equilibrium": (Equilibrium, RestState),
     "Modes": (funicular.Modes,), "Choice": (funicular.Choice,), "Pictures": (Viewable,)}
