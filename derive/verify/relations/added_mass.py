@@ -142,13 +142,14 @@ def _morison(kernel: str, dim: int) -> list[Relation]:
         found = k(kernel, s)
         return found["power"] + found["f"].dot(s["v"])
 
+    def nothing(name: str, output: str) -> Relation:
+        return Relation(name, output, "nil", 0, lambda k, s, t, j: 0 * k(name, s)[output])
+
     beside, tangents = ("g", ("g_t", "g_v", "g_r")) if kernel.endswith("cable") else ("moment", ())
     return [Relation(kernel, "f", "c (M (a - DU/Dt) - m_d DU/Dt)", 0, force),
             Relation(kernel, "power", "rate of c T less the power on the particle", 1,
                      lambda k, s, t, j: _energy(kernel, k, _later(kernel, s, t)), of=power),
-            Relation(kernel, beside, "nil", 0, lambda k, s, t, j: 0 * k(kernel, s)[beside]),
-            *(Relation(f"{kernel}_tangent", each, "nil", 0,
-                       lambda k, s, t, j, each=each: 0 * k(f"{kernel}_tangent", s)[each]) for each in tangents),
+            nothing(kernel, beside), *(nothing(f"{kernel}_tangent", each) for each in tangents),
             *(_derivatives(kernel, dim) if tangents else [])]
 
 

@@ -37,8 +37,8 @@ int fu_drag_densities(const fu_model *model, const fu_coupling *coupling, const 
     return loop.n_rows;
 }
 
-/* Computes a point of a body or of a cable, and its motion with the coordinates; over a step that conserves energy, the mean position
- * with the mean velocity. */
+/* Computes a point of a body or of a cable, and its motion with the coordinates; over a step that conserves energy, the
+ * mean position with the mean velocity. */
 static void place_on_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const fu_equations *step,
                           fu_drag_place *at, fu_attachment_state *end)
 {
