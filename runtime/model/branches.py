@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -21,10 +21,12 @@ strain of a bent element, which its bending alone makes, would be stiff against 
 class BranchModel(CouplingModel):
     """A branch on an element of a cable.
 
-    stiffness: of strain and curvature, N, N m²; time: of a dashpot, s, 0 of a slider; limit: of a slider, N or N m;
-    weights (points,) in m; N_x, N_xx (points, vectors): derivatives of the shape functions.
+    results: names of those of its part; stiffness: of strain and curvature, N, N m²; time: of a dashpot, s, 0 of a
+    slider; limit: of a slider, N or N m; weights (points,) in m; N_x, N_xx (points, vectors): derivatives of the shape
+    functions.
     """
 
+    results: Sequence[str]
     kernel: str
     cable: int
     element: int
@@ -46,19 +48,9 @@ def branch_models(builder: ModelBuilder) -> Iterator[BranchModel]:
         for element in range(cable.n_elements):
             length = cable.mesh.length(element)
             shapes = np.array([cable.kernel("slopes")(length, length * (1 + x) / 2)[0] for x in GAUSS[0]])
-            yield BranchModel(
-                type="branch",
-                name=part.name or "",
-                kernel=KERNELS[dim],
-                cable=number,
-                element=element,
-                stiffness=stiffness,
-                time=part.relaxation_time,
-                limit=part.limit,
-                weights=length * GAUSS[1] / 2,
-                N_x=shapes[:, 0],
-                N_xx=shapes[:, 1],
-            )
+            yield BranchModel(type="branch", name=part.name or "", results=[*part.results], kernel=KERNELS[dim],
+                              cable=number, element=element, stiffness=stiffness, time=part.relaxation_time,
+                              limit=part.limit, weights=length * GAUSS[1] / 2, N_x=shapes[:, 0], N_xx=shapes[:, 1])
 
 
 KINDS = (CouplingKind("branch", Branch.group, branch_models, has_state=False),)

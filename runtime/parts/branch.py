@@ -4,6 +4,7 @@ from typing import Annotated, ClassVar
 
 from .part import Part
 from .quantity import Quantity
+from .schemas import DIRECTION
 from .validation import Name, Reference, positive
 
 
@@ -62,4 +63,42 @@ class Relaxation(Branch):
     @property
     def spring(self) -> float:
         """Return the stiffness of the spring in N."""
+        return self.stiffness
+
+
+class WireFriction(Branch):
+    """Friction between the wires of a rope in bending: a spring in series with a slider, beside the stiffness EI.
+
+    EI of the cable is then the bending stiffness of loose wires, that of each wire by itself. While the wires stick
+    together the stiffness is EI + stiffness, up to that of a solid rod; where the moment of friction reaches its limit
+    they slide. Bent to and fro by the curvature κ, a length takes 4 moment (κ - moment/stiffness) of energy in a cycle,
+    which is in ``energy.dissipated``. Several of them with other limits make a curved loop.
+
+    The wires are without friction's moment where the cable is straight: at rest the moment is that of bending from
+    there. Modes have the stiffness of wires that stick, where these do not slide at rest. In space a section does not
+    turn about the tangent: the plane of the moment follows the tangent alone.
+
+    cable: of elements without sections, cable8p or cable12, straight where it is free of stress
+    stiffness: of the spring, N m²
+    moment: limit of friction, N m
+    """
+
+    kind = "wire_friction"
+    bends = True
+    results: ClassVar = {
+        "moment": Quantity(("time", "{part}.point", "xyz"), "N m", "moment of friction beside that of EI, at two "
+                           "points of each element", DIRECTION),
+        "sliding": Quantity(("time", "{part}.point"), "1", "1 where the wires slide, else 0"),
+    }
+    stiffness: Annotated[float, positive("N m²")]
+    moment: Annotated[float, positive("N m")]
+
+    @property
+    def limit(self) -> float:
+        """Return the moment in N m at which the wires slide."""
+        return self.moment
+
+    @property
+    def spring(self) -> float:
+        """Return the stiffness of the spring in N m²."""
         return self.stiffness

@@ -22,6 +22,7 @@ from .spring import Spring as Spring
 from .fluid import Fluid as Fluid
 from .drag import Drag as Drag
 from .branch import Relaxation as Relaxation
+from .branch import WireFriction as WireFriction
 from .crossing import Crossing as Crossing
 from .surface import Surface as Surface
 from .contact import Contact as Contact

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..errors import SceneError
 from .attachment import Attachment
-from .branch import Relaxation
+from .branch import Relaxation, WireFriction
 from .cable import Cable
 from .contact import Contact
 from .crossing import Crossing
@@ -119,7 +119,7 @@ class SceneData:
     point_forces: dict[str, PointForce]
     fluids: dict[str, Fluid]
     drags: dict[str, Drag]
-    branches: dict[str, Relaxation]
+    branches: dict[str, Relaxation | WireFriction]
     crossings: dict[str, Crossing]
     surfaces: dict[str, Surface]
     contacts: dict[str, Contact]

@@ -1,9 +1,10 @@
-"""Ropes with memory: viscosity beside closed forms, with every integrator that has it.
+"""Ropes with memory: viscosity and friction between wires beside closed forms, with every integrator that has them.
 
     python tests/benchmarks/rope_memory.py [--out FILE.csv]
 
 A rope of 10 m without weight, a standard linear solid: stiffness EA for long times, EA + K for short ones. Its end is
-pulled by a force (creep), moved and held (relaxation), and moved harmonically (loss in a cycle).
+pulled by a force (creep), moved and held (relaxation), and moved harmonically (loss in a cycle). A rope whose end is
+turned to and fro, with friction between its wires: bilinear loops of the moment by the curvature.
 """
 
 from __future__ import annotations
@@ -22,6 +23,11 @@ FREQUENCY, CYCLES = 1.5, 6
 ROPE = Material(youngs_modulus=EA / (np.pi * RADIUS**2), poisson_ratio=0.3, density=1.0)
 """So light that its waves take a thousandth of `BEGIN`."""
 RISE = Ramp(start=0.0, end=BEGIN)
+TURN, BENT, SLIP, TURNS = 0.05, 1.5, 0.01875, 2
+"""rad, N m², N m: half the range of the end's angle, stiffness and limit of friction, which slides from half of the
+curvature on; and cycles."""
+LENGTH, PERIOD, WIRES = 2.0, 2.0, 0.5
+"""m, s, and N m²: of the rope that is bent; of loose wires."""
 INTEGRATORS = "genalpha", "radau", "explicit", "linear"
 
 
@@ -126,6 +132,38 @@ def of_loss(integrator: str, tol: float = 1e-7) -> dict:
     return row("harmonic", integrator, "loss in a cycle, J", lost(run), loss(), loss(), run)
 
 
+def bent(element: str = "cable8p", elements: int = 4) -> Scene:
+    """Return a rope whose end turns to and fro, with friction between its wires; it is too light to vibrate."""
+    scene = Scene(gravity=(0, 0, 0))
+    scene.cable("rope", start=(0, 0, 0), end=(LENGTH, 0, 0), elements=elements, element=element,
+                section=Circle(radius=RADIUS), strain="engineering", material=Material(
+                    youngs_modulus=WIRES / (np.pi * RADIUS**4 / 4), poisson_ratio=0.3, density=0.05))
+    scene.clamp("rope", s=0.0)
+    scene.motion("rope", s=LENGTH, rotation=((0, 0, 1), Harmonic(amplitude=-TURN, frequency=1 / PERIOD, phase=np.pi / 2,
+                                                                 offset=TURN)))
+    scene.wire_friction("rope", stiffness=BENT, moment=SLIP, name="wires")
+    return scene
+
+
+def loop(time: np.ndarray) -> np.ndarray:
+    """Return the moment (T,) of friction of the bent rope, N m, by the curvature at times that have its extremes."""
+    moment, found = 0.0, [0.0]
+    for change in np.diff(TURN / LENGTH * (1 - np.cos(2 * np.pi * time / PERIOD))):
+        moment = float(np.clip(moment + BENT * change, -SLIP, SLIP))
+        found.append(moment)
+    return np.array(found)
+
+
+def of_friction(integrator: str, tol: float = 1e-5, **how: float) -> list[dict]:
+    """Return the rows of the moment, and of the energy of the last cycle."""
+    run = bent().run(TURNS * PERIOD, output_step=PERIOD / 40, integrator=integrator, tol=tol, **how)
+    moment, exact = run["wires.moment"][..., 2], loop(run.time)
+    at = np.unravel_index(np.argmax(np.abs(moment - exact[:, None])), moment.shape)
+    lost, whole = run["energy.dissipated"][-1] - run["energy.dissipated"][-41], 4 * SLIP * (TURN - SLIP / BENT * LENGTH)
+    return [row("bending", integrator, "moment, N m", moment[at], exact[at[0]], SLIP, run),
+            row("bending", integrator, "loss in a cycle, J", lost, whole, whole, run)]
+
+
 def row(case: str, integrator: str, quantity: str, found: float, exact: float, size: float, run: Run) -> dict:
     """Return a row with the error over the size of the quantity, and that of the energies over the work."""
     energies = run["energy.kinetic"] + run["energy.elastic"] + run["energy.dissipated"] - run["energy.external"]
@@ -145,7 +183,8 @@ def main() -> None:
     """Measure and print."""
     options = arguments(__doc__)
     cases = [lambda i, c=case: of_viscosity(c, i) for case in VISCOUS] + [of_loss]
-    show([case(integrator) for case in few(cases) for integrator in few(INTEGRATORS)], options.out)
+    rows = [case(integrator) for case in few(cases) for integrator in few(INTEGRATORS)]
+    show([*rows, *of_friction("radau"), *of_friction("genalpha", step=1e-3)], options.out)
 
 
 if __name__ == "__main__":

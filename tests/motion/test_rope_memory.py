@@ -1,4 +1,4 @@
-"""Cables with memory, against closed forms: viscosity along the axis."""
+"""Cables with memory, against closed forms: viscosity along the axis, friction between wires."""
 
 import numpy as np
 import pytest
@@ -7,16 +7,20 @@ from funicular import Circle, Material, Ramp, Scene
 from interrupted_runs import check_file_and_resume
 from rope_memory import (
     BEGIN,
+    BENT,
     EA,
     FORCE,
     INTEGRATORS,
+    LENGTH,
     TAU,
     VISCOUS,
+    WIRES,
     K,
     L,
     creep,
     displacement,
     moved,
+    of_friction,
     of_loss,
     of_viscosity,
     pulled,
@@ -168,3 +172,110 @@ def test_cables_that_a_branch_does_not_suit_are_refused():
     with refused('relaxation "viscosity": integrator "energy" has no discrete gradient of it; take another '
                  "integrator"):
         hung().run(0.1, integrator="energy")
+
+
+# --- friction between wires --------------------------------------------------------------------------------------
+
+
+def swinging(element: str = "cable12", **wires: float) -> Scene:
+    """Return a cable that falls from a clamp, bends, and swings, with friction between its wires."""
+    scene = Scene()
+    scene.cable("rope", start=(0, 0, 0), end=(2, 0, 0), elements=8, element=element, section=Circle(radius=0.01),
+                material=Material(youngs_modulus=1e8, poisson_ratio=0.3, density=1000))
+    scene.clamp("rope", s=0.0)
+    scene.wire_friction("rope", **{"stiffness": 1.0, "moment": 0.05} | wires, name="wires")
+    return scene
+
+
+def energies(run) -> np.ndarray:
+    """Return the sum of the energies (T,), J."""
+    return sum(run[f"energy.{name}"] for name in ("kinetic", "elastic", "potential", "dissipated"))
+
+
+def test_a_bent_rope_follows_the_bilinear_loop():
+    """The moment by the curvature, and the energy of a cycle, of a rope so light that it hardly vibrates."""
+    for found in of_friction("genalpha", step=1e-3):
+        assert found["error"] < 2e-4 and found["energy"] < 3e-6, found
+
+
+@pytest.mark.parametrize("integrator", ["genalpha", "radau", "explicit"])
+def test_a_swinging_rope_loses_energy_between_its_wires(integrator):
+    """All integrators agree; in space and in the plane alike."""
+    run = swinging().run(0.6, output_step=0.02, tol=1e-4, integrator=integrator)
+    assert np.ptp(energies(run)) < 1e-4 * np.ptp(run["energy.kinetic"])
+    planar = swinging("cable8p").run(0.6, output_step=0.02, tol=1e-4, integrator=integrator)
+    assert np.abs(run["wires.moment"] - planar["wires.moment"]).max() < 2e-3 * 0.05
+    fine = swinging("cable8p").run(0.6, output_step=0.02, tol=1e-6, integrator="genalpha")
+    assert run["energy.dissipated"][-1] == pytest.approx(fine["energy.dissipated"][-1], rel=2e-3)
+    assert run["wires.sliding"].any() and not run["wires.sliding"].all()
+    assert np.abs(run["wires.moment"]).max() <= 0.05 * (1 + 1e-12)
+
+
+def test_wires_that_stick_are_as_stiff_as_a_rod():
+    """A limit out of reach adds the stiffness to EI: the tip deflects as much under a small force."""
+    scene, other = rod(BENT + WIRES), rod(WIRES)
+    other.wire_friction("rope", stiffness=BENT, moment=1e3, name="wires")
+    tips = [each.equilibrium()["rope.nodal_vectors"][-1, 0, 1] for each in (scene, other)]
+    assert tips[1] == pytest.approx(tips[0], rel=1e-6)
+    frequencies = [each.modes(2, about=each.equilibrium()).frequency for each in (scene, other)]
+    np.testing.assert_allclose(frequencies[1], frequencies[0], rtol=1e-5)
+
+
+def rod(stiffness: float) -> Scene:
+    """Return a cantilever of this EI, N m², under a force at its tip that bends it by 1e-3 of its length."""
+    scene = Scene(gravity=(0, 0, 0))
+    scene.cable("rope", start=(0, 0, 0), end=(LENGTH, 0, 0), elements=4, element="cable8p",
+                section=Circle(radius=0.01), strain="engineering",
+                material=Material(youngs_modulus=stiffness / (np.pi * 0.01**4 / 4), poisson_ratio=0.3, density=1000))
+    scene.clamp("rope", s=0.0)
+    scene.force("rope", s=LENGTH, value=(0, 3e-3 * (BENT + WIRES) / LENGTH**2, 0))
+    return scene
+
+
+def test_section_forces_have_the_moment_between_wires():
+    """Moment and shear force of a cantilever at rest, whose wires slide at its clamp and stick at its tip."""
+    scene = rod(WIRES)
+    force = 3e-3 * (BENT + WIRES) / LENGTH**2
+    scene.wire_friction("rope", stiffness=BENT, moment=1e3, name="wires")
+    at = scene.equilibrium().section_forces("rope", method="constitutive", s=[0.3, 1.1, 1.7])
+    np.testing.assert_allclose(at["moment"].values[:, 2], force * (LENGTH - np.array([0.3, 1.1, 1.7])), rtol=1e-3)
+    np.testing.assert_allclose(at["force"].values[:, 1], force, rtol=1e-3)
+
+
+def test_rest_from_a_run_remembers_nothing_and_a_run_from_rest_does():
+    """The moment at the start of a run is that of rest."""
+    scene = swinging("cable8p")
+    rest = scene.equilibrium()
+    run = scene.run(0.1, output_step=0.05, tol=1e-5, initial=rest)
+    np.testing.assert_allclose(run["wires.moment"][0], rest["wires.moment"], atol=1e-12)
+    assert np.abs(run["rope.nodal_vectors"] - rest["rope.nodal_vectors"]).max() < 1e-5
+
+
+@quiet
+@pytest.mark.parametrize("integrator", ["genalpha", "radau", "explicit"])
+def test_runs_with_friction_resume_bit_for_bit(integrator, tmp_path):
+    """Curvature, its elastic part and the tangent of each point are in the checkpoint."""
+    check_file_and_resume(swinging(), tmp_path, 12, duration=0.4, output_step=0.02, tol=1e-3, integrator=integrator)
+
+
+def test_a_turned_rope_has_turned_moments():
+    """A scene that is turned about y by a quarter: the elastic part of the curvature turns with the tangent."""
+    how = {"output_step": 0.1, "step": 1e-3, "integrator": "genalpha"}
+    run, scene = swinging().run(0.4, **how), Scene()
+    scene.cable("rope", start=(0, 0, 0), end=(0, 0, -2), elements=8, element="cable12", section=Circle(radius=0.01),
+                material=Material(youngs_modulus=1e8, poisson_ratio=0.3, density=1000))
+    scene.clamp("rope", s=0.0)
+    scene.wire_friction("rope", stiffness=1.0, moment=0.05, name="wires")
+    found = scene.run(0.4, **how)["wires.moment"]
+    turned = np.stack([-found[..., 2], found[..., 1], found[..., 0]], axis=-1)
+    assert np.abs(turned - run["wires.moment"]).max() < 1e-6 * 0.05
+
+
+def test_cables_whose_wires_are_not_straight_are_refused():
+    """The moment counts from the straight cable."""
+    scene = Scene()
+    scene.cable("arch", points=[(0, 0, 0), (0.5, 0.1, 0), (1, 0, 0)], elements=4, element="cable12",
+                section=Circle(radius=0.01), material=Material(youngs_modulus=1e9, poisson_ratio=0.3, density=1000))
+    with refused('wire_friction "a": cable "arch" is curved where it is free of stress; draw it straight, or give it '
+                 'rest="straight"'):
+        scene.wire_friction("arch", stiffness=1.0, moment=0.1, name="a")

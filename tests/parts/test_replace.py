@@ -141,6 +141,7 @@ def everything() -> fu.Scene:
     scene.surface("side", fu.Plane(point=(0, -6, 0)))
     scene.contact("hook", "bed", name="landing")
     scene.relaxation("hook", stiffness=1e3, time=0.5, name="viscosity")
+    scene.wire_friction("hook", stiffness=0.5, moment=0.1, name="wires")
     scene.crossing("rope", "B", at=(0, 0.5, 0), axis=(0, 0, 1), length=0.2, stiffness=1e3, name="touch")
     return scene
 
@@ -203,6 +204,7 @@ OTHERS = {
     "contact": {"a": "rope", "b": "side", "stiffness": 1e4, "exponent": 1.5, "damping": 0.1, "friction": 0.2,
                 "tangential_stiffness": 1e5, "radius": 0.02, "name": "x"},
     "relaxation": {"cable": "rope", "stiffness": 2e3, "time": 0.7, "name": "other"},
+    "wire_friction": {"cable": "rope", "stiffness": 0.7, "moment": 0.2, "name": "other"},
     "crossing": {"a": "hook", "b": "A", "at": (0, 0.6, 0), "axis": (0, 1, 1), "length": 0.3, "radius": 0.02,
                  "stiffness": 2e3, "exponent": 1.5, "damping": 0.1, "tangential_stiffness": 1e5,
                  "friction": fu.Friction(coefficient=0.2), "side": (0, 1, 0), "name": "x"},

@@ -40,6 +40,7 @@ def everything() -> fu.Scene:
     scene.fluid(density=1.2, name="n-air")
     scene.drag("n-rope", normal=1.0, name="n-drag")
     scene.relaxation("n-rope", stiffness=1e3, time=0.5, name="n-relaxation")
+    scene.wire_friction("n-rope", stiffness=0.5, moment=0.1, name="n-wires")
     scene.crossing("n-rope", "n-beam", stiffness=1e3, name="n-crossing")
     scene.surface("n-floor", shape=fu.Plane(normal=(0, 1, 0), point=(0, -9, 0)))
     scene.surface("n-deck", on="n-hook", shape=fu.Plane(normal=(0, 1, 0), point=(0, -2, 0)))

@@ -102,7 +102,9 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
     nodal = at.value(f"{name}.nodal_vectors")
     start = None if at.start is None else at.start(f"{name}.nodal_vectors")
     force, moment, axes, strain = constitutive(cable, nodal, cuts, at.time, start)
-    force = force + _of_branches(scene, at, cable, cuts)[..., None] * axes[..., 0, :]
+    if scene.branches:
+        more, bending = _of_branches(scene, at, cable, cuts, axes[..., 0, :], strain[..., 0])
+        force, moment = force + more, moment + bending
     if method == "constitutive":
         return {"force": force, "moment": moment} | components(cable, force, moment, axes, strain)
     if (refusal := out_of_balance(scene, model, number, at.is_rest)) is not None:
@@ -120,16 +122,27 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
     return balanced_components(cable, (balance_force, balance_moment), (force, moment), taut, axes, strain, cuts)
 
 
-def _of_branches(scene: SceneData, at: Instants, cable: Cable, cuts: Cuts) -> np.ndarray:
-    """Return the tension (T, n) in N of the branches beside the law of a cable, linear over each element."""
-    total = np.zeros((len(at.time), cuts.s.shape[1]))
-    instants, place = np.arange(len(at.time))[:, None], 2 * cuts.x / cable.mesh.each_length(cuts.element) - 1
-    for branch in scene.branches.values():
-        if branch.cable == cable.name:
-            tension = at.value(f"{branch.name}.tension").reshape(len(at.time), cable.n_elements, -1)
-            first, second = np.moveaxis(tension[instants, cuts.element], -1, 0)
-            total += first + (second - first) * (1 + place * np.sqrt(3)) / 2  # through the points of Gauss
-    return total
+def _of_branches(scene: SceneData, at: Instants, cable: Cable, cuts: Cuts, tangent: np.ndarray,
+                 strain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return force and moment (T, n, 3) of the branches beside the law of a cable, linear over each element; moments
+    that change along it have a shear force. tangent: (T, n, 3); strain: (T, n), of the axis.
+    """
+    force, moment = np.zeros_like(tangent), np.zeros_like(tangent)
+    length = cable.mesh.each_length(cuts.element)
+    place: np.ndarray = 2 * cuts.x / length - 1
+    instants = np.arange(len(at.time))[:, None]
+    for branch in (each for each in scene.branches.values() if each.cable == cable.name):
+        result = at.value(f"{branch.name}.{next(iter(branch.results))}")
+        result = result.reshape(len(at.time), cable.n_elements, 2, 3 if branch.bends else 1)
+        ends = result[instants, cuts.element]
+        first, second = ends[:, :, 0], ends[:, :, 1]
+        value = first + (second - first) * ((1 + np.sqrt(3) * place) / 2)[..., None]  # through the points of Gauss
+        if branch.bends:
+            slope = (second - first) * (np.sqrt(3) / np.multiply(length, 1 + strain))[..., None]
+            moment, force = moment + value, force + np.cross(tangent, slope)
+        else:
+            force = force + value * tangent
+    return force, moment
 
 
 def along_ground(model: Model, name: str, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:

@@ -13,6 +13,8 @@
 #include <math.h>
 #include <string.h>
 
+#define AT_LIMIT (1.0 - 1e-9) /* of the limit: from there on a slider slides */
+
 enum { MEASURES = FU_BRANCH_MEASURES, POINTS = FU_BRANCH_POINTS };
 
 static const fu_branch *of(const fu_coupling *coupling)
@@ -235,24 +237,41 @@ static void rates_at(const fu_model *model, const fu_branch *branch, const fu_st
     }
 }
 
-/* The error of a dashpot's elastic part, whose measures change linearly over a step, by the change of their rates; as a
- * displacement over the element. */
+/* Returns whether the slider of a point slides in a step, or did at its beginning. */
+static int may_slide(const fu_branch *branch, const branch_point *at, int count)
+{
+    double square = 0.0;
+    for (int i = 0; i < count; ++i) square += pow(branch->stiffness[i] * at->from.d[i], 2);
+    return at->slides || sqrt(square) >= AT_LIMIT * branch->limit;
+}
+
+/* Returns the share of the change of their rates times the step by which measures that change linearly are off: of a
+ * dashpot in its elastic part, of a slider that slides at an extreme within the step. */
+static double share_of_error(const fu_branch *branch, const branch_point *at, int count, double h)
+{
+    if (branch->time > 0.0) return fmin(h / (12.0 * branch->time), 0.5);
+    return may_slide(branch, at, count) ? 0.125 : 0.0;
+}
+
+/* The error of the elastic part, as a displacement over the element. */
 static double history_error(const fu_model *model, const fu_coupling *coupling, const fu_state *from,
                             const fu_state *to)
 {
     const fu_branch *branch = of(coupling);
     const double h = to->t - from->t, length = fu_element_length(&model->cables[branch->cable], branch->element);
+    const int count = measures_of(model->dim);
     double largest = 0.0;
-    if (branch->time == 0.0) return 0.0;
     for (int k = 0; k < POINTS; ++k) {
-        const double *i_0 = history_of(branch, to)->marks[k].i;
+        branch_point at;
         double before[MEASURES], after[MEASURES];
-        rates_at(model, branch, from, k, i_0, before);
-        rates_at(model, branch, to, k, i_0, after);
-        for (int i = 0; i < measures_of(model->dim); ++i) {
+        point_at(model, branch, to, k, &at);
+        const double share = share_of_error(branch, &at, count, h);
+        if (share == 0.0) continue;
+        rates_at(model, branch, from, k, at.from.i, before);
+        rates_at(model, branch, to, k, at.from.i, after);
+        for (int i = 0; i < count; ++i) {
             const double bent = i ? length * length : length; /* m by a unit of the measure */
-            if (branch->stiffness[i] > 0.0)
-                largest = fmax(largest, bent * fmin(h / (12.0 * branch->time), 0.5) * h * fabs(after[i] - before[i]));
+            if (branch->stiffness[i] > 0.0) largest = fmax(largest, bent * share * h * fabs(after[i] - before[i]));
         }
     }
     return largest;
@@ -260,18 +279,27 @@ static double history_error(const fu_model *model, const fu_coupling *coupling, 
 
 /* --- results ----------------------------------------------------------------------------------------------------- */
 
+/* Of each point: the tension, the moment, and whether the slider is at its limit, 1 or 0. */
 typedef struct {
-    double tension[FU_BRANCH_POINTS];
+    double tension[FU_BRANCH_POINTS], moment[3 * FU_BRANCH_POINTS], sliding[FU_BRANCH_POINTS];
 } fu_branch_output;
 
 static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                     const double *acceleration, const fu_accelerator *work, double *out)
 {
+    const fu_branch *branch = of(coupling);
+    fu_branch_output *numbers = (fu_branch_output *)out;
+    const int count = measures_of(model->dim);
     (void)acceleration, (void)work;
+    *numbers = (fu_branch_output){.tension = {0.0}};
     for (int k = 0; k < POINTS; ++k) {
         branch_point at;
-        point_at(model, of(coupling), state, k, &at);
-        ((fu_branch_output *)out)->tension[k] = at.n[0];
+        double square = 0.0;
+        point_at(model, branch, state, k, &at);
+        numbers->tension[k] = at.n[0];
+        for (int i = 0; i < count; ++i) square += at.n[i] * at.n[i];
+        for (int i = 1; i < count; ++i) numbers->moment[3 * k + 3 - count + i] = at.n[i];
+        numbers->sliding[k] = branch->time == 0.0 && sqrt(square) >= AT_LIMIT * branch->limit;
     }
 }
 
@@ -289,6 +317,8 @@ static const fu_history_operations history = {.update = update_history, .error =
 
 static const fu_output output_fields[] = {
     FU_OUTPUT(fu_branch_output, tension, "N", NULL),
+    FU_OUTPUT(fu_branch_output, moment, "N m", NULL),
+    FU_OUTPUT(fu_branch_output, sliding, "1", NULL),
     FU_LAST_OUTPUT(fu_branch_output),
 };
 
