@@ -238,8 +238,9 @@ def _branches(model: Model, at: States, kind: str, asked: Asked) -> Values:
     for name in dict.fromkeys(branch.name for branch in model.branches if asked(branch.name)):
         elements = [k for k, branch in enumerate(model.branches) if branch.name == name]
         of = outputs_by_name(kind, at.numbers[kind][:, elements])
-        points = {"moment": of["moment"].reshape(len(at.q), -1, 3)} | {
-            key: of[key].reshape(len(at.q), -1) for key in ("tension", "sliding")}
+        shape = len(at.q), of["sliding"].shape[1] * of["sliding"].shape[2]
+        points = {"moment": of["moment"].reshape(*shape, 3)} | {
+            key: of[key].reshape(shape) for key in ("tension", "sliding")}
         found[name] = {key: points[key] for key in model.branches[elements[0]].results}
     return found
 
