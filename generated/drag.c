@@ -263,7 +263,19 @@
     f_w[7] = d_w1_F_z; \
     f_w[8] = d_w2_F_z;
 
-/* tangent and its rate: of drag_inertia_of_cable and 1 more */
+/* motion past the fluid: of drag_inertia_of_cable and 1 more */
+#define DRAG_MOTION_PAST_THE_FLUID \
+    fu_real w[3], w_rate[3], material[3], c_place[3]; \
+    FU_EACH(row, 3, w[row] = -U[row] + v[row];) \
+    w_rate[0] = -G[0]*v[0] - G[1]*v[1] - G[2]*v[2] - U_rate[0] + a[0]; \
+    w_rate[1] = -G[3]*v[0] - G[4]*v[1] - G[5]*v[2] - U_rate[1] + a[1]; \
+    w_rate[2] = -G[6]*v[0] - G[7]*v[1] - G[8]*v[2] - U_rate[2] + a[2]; \
+    material[0] = G[0]*U[0] + G[1]*U[1] + G[2]*U[2] + U_rate[0]; \
+    material[1] = G[3]*U[0] + G[4]*U[1] + G[5]*U[2] + U_rate[1]; \
+    material[2] = G[6]*U[0] + G[7]*U[1] + G[8]*U[2] + U_rate[2]; \
+    FU_EACH(row, 3, c_place[row] = up[row]*wet[1];)
+
+/* tangent and its rate: of drag_inertia_of_cable and 2 more */
 #define DRAG_TANGENT_AND_ITS_RATE \
     fu_real i[3], i_rate[3]; \
     const fu_real \
@@ -275,7 +287,7 @@
     i_rate[1] = inv_len_t*(-i[1]*(i[0]*t_rate[0] + i[1]*t_rate[1] + i[2]*t_rate[2]) + t_rate[1]); \
     i_rate[2] = inv_len_t*(-i[2]*(i[0]*t_rate[0] + i[1]*t_rate[1] + i[2]*t_rate[2]) + t_rate[2]);
 
-/* impulse and its rate: of drag_inertia_of_cable and 1 more */
+/* impulse and its rate: of drag_inertia_of_cable and 2 more */
 #define DRAG_IMPULSE_AND_ITS_RATE \
     fu_real P[3], P_rate[3]; \
     const fu_real \
@@ -284,8 +296,8 @@
     FU_EACH(row, 3, P[row] = -i[row]*less*w_t + m[0]*w[row];) \
     FU_EACH(row, 3, P_rate[row] = -less*(i_rate[row]*w_t + i[row]*w_t_rate) + m[0]*w_rate[row];)
 
-/* motion past the fluid: of drag_inertia_of_cable_tangent and 5 more */
-#define DRAG_MOTION_PAST_THE_FLUID \
+/* motion past the fluid: of drag_inertia_of_cable_tangent and 3 more */
+#define DRAG_MOTION_PAST_THE_FLUID_2 \
     const fu_real \
         w_x = -U[0] + v[0], \
         w_y = -U[1] + v[1], \
@@ -300,7 +312,7 @@
         c_place_y = up[1]*wet[1], \
         c_place_z = up[2]*wet[1];
 
-/* tangent and its rate: of drag_inertia_of_cable_tangent and 2 more */
+/* tangent and its rate: of drag_inertia_of_cable_tangent and 1 more */
 #define DRAG_TANGENT_AND_ITS_RATE_2 \
     const fu_real \
         less = m[0] - m[1], \
@@ -313,7 +325,7 @@
         i_rate_y = inv_len_t*(-i_y*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[1]), \
         i_rate_z = inv_len_t*(-i_z*(i_x*t_rate[0] + i_y*t_rate[1] + i_z*t_rate[2]) + t_rate[2]);
 
-/* impulse and its rate: of drag_inertia_of_cable_tangent and 2 more */
+/* impulse and its rate: of drag_inertia_of_cable_tangent and 1 more */
 #define DRAG_IMPULSE_AND_ITS_RATE_2 \
     const fu_real \
         w_t = i_x*w_x + i_y*w_y + i_z*w_z, \
@@ -1098,19 +1110,10 @@ FU_KERNEL void drag_impulse_of_cable(const fu_real *t, const fu_real *w, const f
     M[8] = m[0] - scale*t[2]*t[2];
 }
 
-/* force of the inertia of the fluid on a length of cable (Lighthill 1971; Lagrange's equations of T); 85 add, 124 mul, 1 div, 1 sqrt */
+/* force of the inertia of the fluid on a length of cable (Lighthill 1971; Lagrange's equations of T); 87 add, 125 mul, 1 div, 1 sqrt */
 FU_KERNEL void drag_inertia_of_cable(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *g, fu_real *power)
 {
-    /* motion past the fluid */
-    fu_real w[3], w_rate[3], material[3], c_place[3];
-    FU_EACH(row, 3, w[row] = -U[row] + v[row];)
-    w_rate[0] = -G[0]*v[0] - G[1]*v[1] - G[2]*v[2] - U_rate[0] + a[0];
-    w_rate[1] = -G[3]*v[0] - G[4]*v[1] - G[5]*v[2] - U_rate[1] + a[1];
-    w_rate[2] = -G[6]*v[0] - G[7]*v[1] - G[8]*v[2] - U_rate[2] + a[2];
-    material[0] = G[0]*U[0] + G[1]*U[1] + G[2]*U[2] + U_rate[0];
-    material[1] = G[3]*U[0] + G[4]*U[1] + G[5]*U[2] + U_rate[1];
-    material[2] = G[6]*U[0] + G[7]*U[1] + G[8]*U[2] + U_rate[2];
-    FU_EACH(row, 3, c_place[row] = up[row]*wet[1];)
+    DRAG_MOTION_PAST_THE_FLUID
     DRAG_TANGENT_AND_ITS_RATE
     DRAG_IMPULSE_AND_ITS_RATE
     /* derivative of the kinetic energy by the slope */
@@ -1120,7 +1123,7 @@ FU_KERNEL void drag_inertia_of_cable(const fu_real *t, const fu_real *t_rate, co
     /* force on the particle */
     fu_real P_wet[3], P_wet_rate[3], strained[3], carried[3];
     FU_EACH(row, 3, P_wet[row] = P[row]*wet[0];)
-    const fu_real c_rate = c_place[0]*v[0] + c_place[1]*v[1] + c_place[2]*v[2];
+    const fu_real c_rate = c_place[0]*v[0] + c_place[1]*v[1] + c_place[2]*v[2] + wet[3];
     FU_EACH(row, 3, P_wet_rate[row] = P_rate[row]*wet[0] + P[row]*c_rate;)
     strained[0] = G[0]*P_wet[0] + G[3]*P_wet[1] + G[6]*P_wet[2];
     strained[1] = G[1]*P_wet[0] + G[4]*P_wet[1] + G[7]*P_wet[2];
@@ -1131,20 +1134,20 @@ FU_KERNEL void drag_inertia_of_cable(const fu_real *t, const fu_real *t_rate, co
     FU_EACH(row, 3, f[row] = P_wet_rate[row] - T*c_place[row] - carried[row] + strained[row];)
     /* outputs */
     FU_EACH(row, 3, g[row] = G_t[row];)
-    power[0] = -P_wet_rate[0]*U[0] - P_wet_rate[1]*U[1] - P_wet_rate[2]*U[2] + carried[0]*v[0] + carried[1]*v[1] + carried[2]*v[2] - strained[0]*v[0] - strained[1]*v[1] - strained[2]*v[2];
+    power[0] = -P_wet_rate[0]*U[0] - P_wet_rate[1]*U[1] - P_wet_rate[2]*U[2] - T*wet[3] + carried[0]*v[0] + carried[1]*v[1] + carried[2]*v[2] - strained[0]*v[0] - strained[1]*v[1] - strained[2]*v[2];
 }
 
-/* derivatives of the force of the inertia of the fluid on a cable (derivatives of Lighthill 1971; Lagrange's equations of T); 545 add, 1059 mul, 1 div, 1 sqrt */
+/* derivatives of the force of the inertia of the fluid on a cable (derivatives of Lighthill 1971; Lagrange's equations of T); 546 add, 1059 mul, 1 div, 1 sqrt */
 FU_KERNEL void drag_inertia_of_cable_tangent(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_t, fu_real *f_t_rate, fu_real *f_r, fu_real *f_v, fu_real *g_t, fu_real *g_r, fu_real *g_v)
 {
-    DRAG_MOTION_PAST_THE_FLUID
+    DRAG_MOTION_PAST_THE_FLUID_2
     DRAG_TANGENT_AND_ITS_RATE_2
     DRAG_IMPULSE_AND_ITS_RATE_2
     /* derivative of the kinetic energy by the slope */
     const fu_real pull = inv_len_t*less*w_t*wet[0];
     /* force on the particle */
     const fu_real
-        c_rate = c_place_x*v[0] + c_place_y*v[1] + c_place_z*v[2],
+        c_rate = c_place_x*v[0] + c_place_y*v[1] + c_place_z*v[2] + wet[3],
         displaced_wet = displaced*wet[0],
         T = 0.5*P_x*w_x + 0.5*P_y*w_y + 0.5*P_z*w_z;
     /* derivatives */
@@ -1402,7 +1405,7 @@ void drag_inertia_step(const fu_real *t, const fu_real *t_next, const fu_real *w
 #endif
 
 #ifndef FU_BLOCK
-/* kinetic energy of the fluid along a rope, and its derivatives (Lighthill 1971; Lagrange's equations of T); 85 add, 128 mul, 1 div, 1 sqrt */
+/* kinetic energy of the fluid along a rope, and its derivatives (Lighthill 1971; Lagrange's equations of T); 87 add, 129 mul, 1 div, 1 sqrt */
 void drag_inertia_of_span(fu_real growth, const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *y, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *T_r, fu_real *T_t, fu_real *T_v, fu_real *rate, fu_real *energy, fu_real *power)
 {
     /* motion past the fluid */
@@ -1424,7 +1427,7 @@ void drag_inertia_of_span(fu_real growth, const fu_real *t, const fu_real *t_rat
     /* force on the particle */
     fu_real P_wet[3], P_wet_rate[3], strained[3], carried[3];
     FU_EACH(row, 3, P_wet[row] = P[row]*wet[0];)
-    const fu_real c_rate = c_place[0]*y[0] + c_place[1]*y[1] + c_place[2]*y[2];
+    const fu_real c_rate = c_place[0]*y[0] + c_place[1]*y[1] + c_place[2]*y[2] + wet[3];
     FU_EACH(row, 3, P_wet_rate[row] = P_rate[row]*wet[0] + P_wet[row]*growth + P[row]*c_rate;)
     strained[0] = G[0]*P_wet[0] + G[3]*P_wet[1] + G[6]*P_wet[2];
     strained[1] = G[1]*P_wet[0] + G[4]*P_wet[1] + G[7]*P_wet[2];
@@ -1438,12 +1441,12 @@ void drag_inertia_of_span(fu_real growth, const fu_real *t, const fu_real *t_rat
     FU_EACH(row, 3, T_t[row] = G_t[row];)
     FU_EACH(row, 3, T_v[row] = P_wet[row];)
     energy[0] = T*wet[0];
-    power[0] = -P_wet_rate[0]*U[0] - P_wet_rate[1]*U[1] - P_wet_rate[2]*U[2] + carried[0]*v[0] + carried[1]*v[1] + carried[2]*v[2] - strained[0]*y[0] - strained[1]*y[1] - strained[2]*y[2];
+    power[0] = -P_wet_rate[0]*U[0] - P_wet_rate[1]*U[1] - P_wet_rate[2]*U[2] - T*wet[3] + carried[0]*v[0] + carried[1]*v[1] + carried[2]*v[2] - strained[0]*y[0] - strained[1]*y[1] - strained[2]*y[2];
 }
 #endif
 
 #ifndef FU_BLOCK
-/* second derivatives of the kinetic energy of the fluid along a rope, and derivatives of the rate of the impulse (derivatives of Lighthill 1971; Lagrange's equations of T); 638 add, 1377 mul, 1 div, 1 sqrt */
+/* second derivatives of the kinetic energy of the fluid along a rope, and derivatives of the rate of the impulse (derivatives of Lighthill 1971; Lagrange's equations of T); 639 add, 1377 mul, 1 div, 1 sqrt */
 void drag_inertia_of_span_tangent(fu_real growth, const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *y, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *second, fu_real *rate_by)
 {
     /* motion past the fluid */
@@ -1466,7 +1469,7 @@ void drag_inertia_of_span_tangent(fu_real growth, const fu_real *t, const fu_rea
     const fu_real pull = inv_len_t*less*w_t*wet[0];
     /* force on the particle */
     const fu_real
-        c_rate = c_place_x*y[0] + c_place_y*y[1] + c_place_z*y[2],
+        c_rate = c_place_x*y[0] + c_place_y*y[1] + c_place_z*y[2] + wet[3],
         displaced_wet = displaced*wet[0],
         T = 0.5*P_x*w_x + 0.5*P_y*w_y + 0.5*P_z*w_z;
     /* derivatives */
@@ -1906,11 +1909,11 @@ void drag_impulse_of_point(const fu_real *A, const fu_real *C, const fu_real *w,
 #endif
 
 #ifndef FU_BLOCK
-/* force and moment of the inertia of the fluid on a body (Lamb, Hydrodynamics, art. 124; Taylor 1928); 117 add, 157 mul */
+/* force and moment of the inertia of the fluid on a body (Lamb, Hydrodynamics, art. 124; Taylor 1928); 119 add, 158 mul */
 void drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *moment, fu_real *power)
 {
     DRAG_ADDED_MASS
-    DRAG_MOTION_PAST_THE_FLUID
+    DRAG_MOTION_PAST_THE_FLUID_2
     /* impulse, its rate and moment */
     DRAG_PART_OF_IMPULSE_ITS_RATE_AND_MOMENT
     const fu_real
@@ -1922,7 +1925,7 @@ void drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_real *om
         P_wet_x = P_x*wet[0],
         P_wet_y = P_y*wet[0],
         P_wet_z = P_z*wet[0],
-        c_rate = c_place_x*v[0] + c_place_y*v[1] + c_place_z*v[2],
+        c_rate = c_place_x*v[0] + c_place_y*v[1] + c_place_z*v[2] + wet[3],
         P_wet_rate_x = P_rate_x*wet[0] + P_x*c_rate,
         P_wet_rate_y = P_rate_y*wet[0] + P_y*c_rate,
         P_wet_rate_z = P_rate_z*wet[0] + P_z*c_rate,
@@ -1944,20 +1947,20 @@ void drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_real *om
     moment[0] = moment0;
     moment[1] = moment1;
     moment[2] = moment2;
-    power[0] = -P_wet_rate_x*U[0] - P_wet_rate_y*U[1] - P_wet_rate_z*U[2] + carried_x*v[0] + carried_y*v[1] + carried_z*v[2] - strained_x*v[0] - strained_y*v[1] - strained_z*v[2];
+    power[0] = -P_wet_rate_x*U[0] - P_wet_rate_y*U[1] - P_wet_rate_z*U[2] - T*wet[3] + carried_x*v[0] + carried_y*v[1] + carried_z*v[2] - strained_x*v[0] - strained_y*v[1] - strained_z*v[2];
 }
 #endif
 
 #ifndef FU_BLOCK
-/* derivatives of force and moment of the inertia of the fluid (derivatives of Lamb, Hydrodynamics, art. 124; Taylor 1928); 589 add, 865 mul */
+/* derivatives of force and moment of the inertia of the fluid (derivatives of Lamb, Hydrodynamics, art. 124; Taylor 1928); 590 add, 865 mul */
 void drag_inertia_of_point_tangent(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_by, fu_real *moment_by)
 {
     DRAG_ADDED_MASS
-    DRAG_MOTION_PAST_THE_FLUID
+    DRAG_MOTION_PAST_THE_FLUID_2
     DRAG_IMPULSE_ITS_RATE_AND_MOMENT
     /* force on the particle */
     const fu_real
-        c_rate = c_place_x*v[0] + c_place_y*v[1] + c_place_z*v[2],
+        c_rate = c_place_x*v[0] + c_place_y*v[1] + c_place_z*v[2] + wet[3],
         displaced_wet = displaced*wet[0],
         T = 0.5*P_x*w_x + 0.5*P_y*w_y + 0.5*P_z*w_z;
     /* derivatives */
@@ -2303,164 +2306,123 @@ void drag_inertia_of_point_step(const fu_real *A, const fu_real *A_next, const f
 }
 #endif
 
-/* force of the inertia of the fluid on a length of cable by Morison's equation; 82 add, 116 mul, 1 div, 1 sqrt */
+/* force of the inertia of the fluid on a length of cable by Morison's equation; 77 add, 107 mul, 1 div, 1 sqrt */
 FU_KERNEL void drag_morison_of_cable(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *g, fu_real *power)
 {
     DRAG_MOTION_PAST_THE_FLUID
-    DRAG_TANGENT_AND_ITS_RATE_2
-    DRAG_IMPULSE_AND_ITS_RATE_2
+    DRAG_TANGENT_AND_ITS_RATE
+    DRAG_IMPULSE_AND_ITS_RATE
     /* force on the particle */
-    const fu_real
-        past_rate_x = G[0]*w_x + G[1]*w_y + G[2]*w_z + w_rate_x,
-        past_rate_y = G[3]*w_x + G[4]*w_y + G[5]*w_z + w_rate_y,
-        past_rate_z = G[6]*w_x + G[7]*w_y + G[8]*w_z + w_rate_z,
-        less_x_t = less*(i_x*past_rate_x + i_y*past_rate_y + i_z*past_rate_z),
-        F_x = wet[0]*(-displaced*material_x - i_x*less_x_t + m[0]*past_rate_x),
-        F_y = wet[0]*(-displaced*material_y - i_y*less_x_t + m[0]*past_rate_y),
-        F_z = wet[0]*(-displaced*material_z - i_z*less_x_t + m[0]*past_rate_z),
-        c_rate = c_place_x*v[0] + c_place_y*v[1] + c_place_z*v[2];
+    fu_real past_rate[3], F[3];
+    FU_EACH(row, 3, past_rate[row] = a[row] - material[row];)
+    const fu_real less_x_t = less*(i[0]*past_rate[0] + i[1]*past_rate[1] + i[2]*past_rate[2]);
+    FU_EACH(row, 3, F[row] = wet[0]*(-displaced*material[row] - i[row]*less_x_t + m[0]*past_rate[row]);)
+    const fu_real c_rate = c_place[0]*v[0] + c_place[1]*v[1] + c_place[2]*v[2] + wet[3];
     /* outputs */
-    f[0] = F_x;
-    f[1] = F_y;
-    f[2] = F_z;
-    g[0] = FU_NUMBER(0.0);
-    g[1] = FU_NUMBER(0.0);
-    g[2] = FU_NUMBER(0.0);
-    power[0] = -F_x*v[0] - F_y*v[1] - F_z*v[2] + 0.5*c_rate*(P_x*w_x + P_y*w_y + P_z*w_z) + 0.5*wet[0]*(P_rate_x*w_x + P_rate_y*w_y + P_rate_z*w_z + P_x*w_rate_x + P_y*w_rate_y + P_z*w_rate_z);
+    FU_EACH(row, 3, f[row] = F[row];)
+    FU_EACH(row, 3, g[row] = FU_NUMBER(0.0);)
+    power[0] = -F[0]*v[0] - F[1]*v[1] - F[2]*v[2] + 0.5*c_rate*(P[0]*w[0] + P[1]*w[1] + P[2]*w[2]) + 0.5*wet[0]*(P_rate[0]*w[0] + P_rate[1]*w[1] + P_rate[2]*w[2] + P[0]*w_rate[0] + P[1]*w_rate[1] + P[2]*w_rate[2]);
 }
 
-/* derivatives of the force of the inertia of the fluid on a cable by Morison's equation (derivatives of Morison et al. 1950; Hall & Goupee 2015); 161 add, 292 mul, 1 div, 1 sqrt */
+/* derivatives of the force of the inertia of the fluid on a cable by Morison's equation (derivatives of Morison et al. 1950; Hall & Goupee 2015); 128 add, 247 mul, 1 div, 1 sqrt */
 FU_KERNEL void drag_morison_of_cable_tangent(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_t, fu_real *f_t_rate, fu_real *f_r, fu_real *f_v, fu_real *g_t, fu_real *g_r, fu_real *g_v)
 {
     (void)t_rate;
-    DRAG_MOTION_PAST_THE_FLUID
+    (void)v;
+    /* motion past the fluid */
+    fu_real material[3], c_place[3];
+    material[0] = G[0]*U[0] + G[1]*U[1] + G[2]*U[2] + U_rate[0];
+    material[1] = G[3]*U[0] + G[4]*U[1] + G[5]*U[2] + U_rate[1];
+    material[2] = G[6]*U[0] + G[7]*U[1] + G[8]*U[2] + U_rate[2];
+    FU_EACH(row, 3, c_place[row] = up[row]*wet[1];)
     /* tangent and its rate */
+    fu_real i[3];
     const fu_real
         less = m[0] - m[1],
         len_t = FU_SQRT(t[0]*t[0] + t[1]*t[1] + t[2]*t[2]),
-        inv_len_t = 1.0/len_t,
-        i_x = inv_len_t*t[0],
-        i_y = inv_len_t*t[1],
-        i_z = inv_len_t*t[2];
+        inv_len_t = 1.0/len_t;
+    FU_EACH(row, 3, i[row] = inv_len_t*t[row];)
     /* force on the particle */
-    const fu_real
-        past_rate_x = G[0]*w_x + G[1]*w_y + G[2]*w_z + w_rate_x,
-        past_rate_y = G[3]*w_x + G[4]*w_y + G[5]*w_z + w_rate_y,
-        past_rate_z = G[6]*w_x + G[7]*w_y + G[8]*w_z + w_rate_z,
-        less_x_t = less*(i_x*past_rate_x + i_y*past_rate_y + i_z*past_rate_z);
+    fu_real past_rate[3];
+    FU_EACH(row, 3, past_rate[row] = a[row] - material[row];)
+    const fu_real less_x_t = less*(i[0]*past_rate[0] + i[1]*past_rate[1] + i[2]*past_rate[2]);
     /* derivatives */
+    fu_real d_t0_i[3], d_t0_F[3], d_t1_i[3], d_t1_F[3], d_t2_i[3], d_t2_F[3], d_wet0_F[3];
     const fu_real
         d_t0_len_t = inv_len_t*t[0],
-        d_t0_inv_len_t = -(d_t0_len_t*inv_len_t*inv_len_t),
-        d_t0_i_x = d_t0_inv_len_t*t[0] + inv_len_t,
-        d_t0_i_y = d_t0_inv_len_t*t[1],
-        d_t0_i_z = d_t0_inv_len_t*t[2],
-        d_t0_less_x_t = d_t0_i_x*less*past_rate_x + d_t0_i_y*less*past_rate_y + d_t0_i_z*less*past_rate_z,
-        d_t0_F_x = -d_t0_i_x*less_x_t*wet[0] - d_t0_less_x_t*i_x*wet[0],
-        d_t0_F_y = -d_t0_i_y*less_x_t*wet[0] - d_t0_less_x_t*i_y*wet[0],
-        d_t0_F_z = -d_t0_i_z*less_x_t*wet[0] - d_t0_less_x_t*i_z*wet[0],
+        d_t0_inv_len_t = -(d_t0_len_t*inv_len_t*inv_len_t);
+    d_t0_i[0] = d_t0_inv_len_t*t[0] + inv_len_t;
+    d_t0_i[1] = d_t0_inv_len_t*t[1];
+    d_t0_i[2] = d_t0_inv_len_t*t[2];
+    const fu_real d_t0_less_x_t = d_t0_i[0]*less*past_rate[0] + d_t0_i[1]*less*past_rate[1] + d_t0_i[2]*less*past_rate[2];
+    FU_EACH(row, 3, d_t0_F[row] = -d_t0_i[row]*less_x_t*wet[0] - d_t0_less_x_t*i[row]*wet[0];)
+    const fu_real
         d_t1_len_t = inv_len_t*t[1],
-        d_t1_inv_len_t = -(d_t1_len_t*inv_len_t*inv_len_t),
-        d_t1_i_x = d_t1_inv_len_t*t[0],
-        d_t1_i_y = d_t1_inv_len_t*t[1] + inv_len_t,
-        d_t1_i_z = d_t1_inv_len_t*t[2],
-        d_t1_less_x_t = d_t1_i_x*less*past_rate_x + d_t1_i_y*less*past_rate_y + d_t1_i_z*less*past_rate_z,
-        d_t1_F_x = -d_t1_i_x*less_x_t*wet[0] - d_t1_less_x_t*i_x*wet[0],
-        d_t1_F_y = -d_t1_i_y*less_x_t*wet[0] - d_t1_less_x_t*i_y*wet[0],
-        d_t1_F_z = -d_t1_i_z*less_x_t*wet[0] - d_t1_less_x_t*i_z*wet[0],
+        d_t1_inv_len_t = -(d_t1_len_t*inv_len_t*inv_len_t);
+    d_t1_i[0] = d_t1_inv_len_t*t[0];
+    d_t1_i[1] = d_t1_inv_len_t*t[1] + inv_len_t;
+    d_t1_i[2] = d_t1_inv_len_t*t[2];
+    const fu_real d_t1_less_x_t = d_t1_i[0]*less*past_rate[0] + d_t1_i[1]*less*past_rate[1] + d_t1_i[2]*less*past_rate[2];
+    FU_EACH(row, 3, d_t1_F[row] = -d_t1_i[row]*less_x_t*wet[0] - d_t1_less_x_t*i[row]*wet[0];)
+    const fu_real
         d_t2_len_t = inv_len_t*t[2],
-        d_t2_inv_len_t = -(d_t2_len_t*inv_len_t*inv_len_t),
-        d_t2_i_x = d_t2_inv_len_t*t[0],
-        d_t2_i_y = d_t2_inv_len_t*t[1],
-        d_t2_i_z = d_t2_inv_len_t*t[2] + inv_len_t,
-        d_t2_less_x_t = d_t2_i_x*less*past_rate_x + d_t2_i_y*less*past_rate_y + d_t2_i_z*less*past_rate_z,
-        d_t2_F_x = -d_t2_i_x*less_x_t*wet[0] - d_t2_less_x_t*i_x*wet[0],
-        d_t2_F_y = -d_t2_i_y*less_x_t*wet[0] - d_t2_less_x_t*i_y*wet[0],
-        d_t2_F_z = -d_t2_i_z*less_x_t*wet[0] - d_t2_less_x_t*i_z*wet[0],
-        d_w_x_less_x_t = G[0]*i_x*less + G[3]*i_y*less + G[6]*i_z*less,
-        d_w_x_F_x = G[0]*m[0]*wet[0] - d_w_x_less_x_t*i_x*wet[0],
-        d_w_x_F_y = G[3]*m[0]*wet[0] - d_w_x_less_x_t*i_y*wet[0],
-        d_w_x_F_z = G[6]*m[0]*wet[0] - d_w_x_less_x_t*i_z*wet[0],
-        d_w_y_less_x_t = G[1]*i_x*less + G[4]*i_y*less + G[7]*i_z*less,
-        d_w_y_F_x = G[1]*m[0]*wet[0] - d_w_y_less_x_t*i_x*wet[0],
-        d_w_y_F_y = G[4]*m[0]*wet[0] - d_w_y_less_x_t*i_y*wet[0],
-        d_w_y_F_z = G[7]*m[0]*wet[0] - d_w_y_less_x_t*i_z*wet[0],
-        d_w_z_less_x_t = G[2]*i_x*less + G[5]*i_y*less + G[8]*i_z*less,
-        d_w_z_F_x = G[2]*m[0]*wet[0] - d_w_z_less_x_t*i_x*wet[0],
-        d_w_z_F_y = G[5]*m[0]*wet[0] - d_w_z_less_x_t*i_y*wet[0],
-        d_w_z_F_z = G[8]*m[0]*wet[0] - d_w_z_less_x_t*i_z*wet[0],
-        d_w_rate_x_less_x_t = i_x*less,
-        d_w_rate_x_F_x = -d_w_rate_x_less_x_t*i_x*wet[0] + m[0]*wet[0],
-        d_w_rate_x_F_y = -(d_w_rate_x_less_x_t*i_y*wet[0]),
-        d_w_rate_x_F_z = -(d_w_rate_x_less_x_t*i_z*wet[0]),
-        d_w_rate_y_less_x_t = i_y*less,
-        d_w_rate_y_F_x = -(d_w_rate_y_less_x_t*i_x*wet[0]),
-        d_w_rate_y_F_y = -d_w_rate_y_less_x_t*i_y*wet[0] + m[0]*wet[0],
-        d_w_rate_y_F_z = -(d_w_rate_y_less_x_t*i_z*wet[0]),
-        d_w_rate_z_less_x_t = i_z*less,
-        d_w_rate_z_F_x = -(d_w_rate_z_less_x_t*i_x*wet[0]),
-        d_w_rate_z_F_y = -(d_w_rate_z_less_x_t*i_y*wet[0]),
-        d_w_rate_z_F_z = -d_w_rate_z_less_x_t*i_z*wet[0] + m[0]*wet[0],
-        d_material_x_F_x = -(displaced*wet[0]),
-        d_material_y_F_y = -(displaced*wet[0]),
-        d_material_z_F_z = -(displaced*wet[0]),
-        d_wet0_F_x = -displaced*material_x - i_x*less_x_t + m[0]*past_rate_x,
-        d_wet0_F_y = -displaced*material_y - i_y*less_x_t + m[0]*past_rate_y,
-        d_wet0_F_z = -displaced*material_z - i_z*less_x_t + m[0]*past_rate_z;
+        d_t2_inv_len_t = -(d_t2_len_t*inv_len_t*inv_len_t);
+    d_t2_i[0] = d_t2_inv_len_t*t[0];
+    d_t2_i[1] = d_t2_inv_len_t*t[1];
+    d_t2_i[2] = d_t2_inv_len_t*t[2] + inv_len_t;
+    const fu_real d_t2_less_x_t = d_t2_i[0]*less*past_rate[0] + d_t2_i[1]*less*past_rate[1] + d_t2_i[2]*less*past_rate[2];
+    FU_EACH(row, 3, d_t2_F[row] = -d_t2_i[row]*less_x_t*wet[0] - d_t2_less_x_t*i[row]*wet[0];)
+    const fu_real
+        d_material_x_less_x_t = -(i[0]*less),
+        d_material_x_F_x = -d_material_x_less_x_t*i[0]*wet[0] - displaced*wet[0] - m[0]*wet[0],
+        d_material_x_F_y = -(d_material_x_less_x_t*i[1]*wet[0]),
+        d_material_x_F_z = -(d_material_x_less_x_t*i[2]*wet[0]),
+        d_material_y_less_x_t = -(i[1]*less),
+        d_material_y_F_x = -(d_material_y_less_x_t*i[0]*wet[0]),
+        d_material_y_F_y = -d_material_y_less_x_t*i[1]*wet[0] - displaced*wet[0] - m[0]*wet[0],
+        d_material_y_F_z = -(d_material_y_less_x_t*i[2]*wet[0]),
+        d_material_z_less_x_t = -(i[2]*less),
+        d_material_z_F_x = -(d_material_z_less_x_t*i[0]*wet[0]),
+        d_material_z_F_y = -(d_material_z_less_x_t*i[1]*wet[0]),
+        d_material_z_F_z = -d_material_z_less_x_t*i[2]*wet[0] - displaced*wet[0] - m[0]*wet[0];
+    FU_EACH(row, 3, d_wet0_F[row] = -displaced*material[row] - i[row]*less_x_t + m[0]*past_rate[row];)
     /* outputs */
-    f_t[0] = d_t0_F_x;
-    f_t[1] = d_t1_F_x;
-    f_t[2] = d_t2_F_x;
-    f_t[3] = d_t0_F_y;
-    f_t[4] = d_t1_F_y;
-    f_t[5] = d_t2_F_y;
-    f_t[6] = d_t0_F_z;
-    f_t[7] = d_t1_F_z;
-    f_t[8] = d_t2_F_z;
-    FU_EACH(g, 9,
-        f_t_rate[g] = FU_NUMBER(0.0);)
-    f_r[0] = G[0]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[3]*(G[1]*d_material_x_F_x - d_w_y_F_x) + G[6]*(G[2]*d_material_x_F_x - d_w_z_F_x) + c_place_x*d_wet0_F_x;
-    f_r[1] = G[1]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[4]*(G[1]*d_material_x_F_x - d_w_y_F_x) + G[7]*(G[2]*d_material_x_F_x - d_w_z_F_x) + c_place_y*d_wet0_F_x;
-    f_r[2] = G[2]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[5]*(G[1]*d_material_x_F_x - d_w_y_F_x) + G[8]*(G[2]*d_material_x_F_x - d_w_z_F_x) + c_place_z*d_wet0_F_x;
-    f_r[3] = G[0]*(G[3]*d_material_y_F_y - d_w_x_F_y) + G[3]*(G[4]*d_material_y_F_y - d_w_y_F_y) + G[6]*(G[5]*d_material_y_F_y - d_w_z_F_y) + c_place_x*d_wet0_F_y;
-    f_r[4] = G[1]*(G[3]*d_material_y_F_y - d_w_x_F_y) + G[4]*(G[4]*d_material_y_F_y - d_w_y_F_y) + G[7]*(G[5]*d_material_y_F_y - d_w_z_F_y) + c_place_y*d_wet0_F_y;
-    f_r[5] = G[2]*(G[3]*d_material_y_F_y - d_w_x_F_y) + G[5]*(G[4]*d_material_y_F_y - d_w_y_F_y) + G[8]*(G[5]*d_material_y_F_y - d_w_z_F_y) + c_place_z*d_wet0_F_y;
-    f_r[6] = G[0]*(G[6]*d_material_z_F_z - d_w_x_F_z) + G[3]*(G[7]*d_material_z_F_z - d_w_y_F_z) + G[6]*(G[8]*d_material_z_F_z - d_w_z_F_z) + c_place_x*d_wet0_F_z;
-    f_r[7] = G[1]*(G[6]*d_material_z_F_z - d_w_x_F_z) + G[4]*(G[7]*d_material_z_F_z - d_w_y_F_z) + G[7]*(G[8]*d_material_z_F_z - d_w_z_F_z) + c_place_y*d_wet0_F_z;
-    f_r[8] = G[2]*(G[6]*d_material_z_F_z - d_w_x_F_z) + G[5]*(G[7]*d_material_z_F_z - d_w_y_F_z) + G[8]*(G[8]*d_material_z_F_z - d_w_z_F_z) + c_place_z*d_wet0_F_z;
-    f_v[0] = -G[0]*d_w_rate_x_F_x - G[3]*d_w_rate_y_F_x - G[6]*d_w_rate_z_F_x + d_w_x_F_x;
-    f_v[1] = -G[1]*d_w_rate_x_F_x - G[4]*d_w_rate_y_F_x - G[7]*d_w_rate_z_F_x + d_w_y_F_x;
-    f_v[2] = -G[2]*d_w_rate_x_F_x - G[5]*d_w_rate_y_F_x - G[8]*d_w_rate_z_F_x + d_w_z_F_x;
-    f_v[3] = -G[0]*d_w_rate_x_F_y - G[3]*d_w_rate_y_F_y - G[6]*d_w_rate_z_F_y + d_w_x_F_y;
-    f_v[4] = -G[1]*d_w_rate_x_F_y - G[4]*d_w_rate_y_F_y - G[7]*d_w_rate_z_F_y + d_w_y_F_y;
-    f_v[5] = -G[2]*d_w_rate_x_F_y - G[5]*d_w_rate_y_F_y - G[8]*d_w_rate_z_F_y + d_w_z_F_y;
-    f_v[6] = -G[0]*d_w_rate_x_F_z - G[3]*d_w_rate_y_F_z - G[6]*d_w_rate_z_F_z + d_w_x_F_z;
-    f_v[7] = -G[1]*d_w_rate_x_F_z - G[4]*d_w_rate_y_F_z - G[7]*d_w_rate_z_F_z + d_w_y_F_z;
-    f_v[8] = -G[2]*d_w_rate_x_F_z - G[5]*d_w_rate_y_F_z - G[8]*d_w_rate_z_F_z + d_w_z_F_z;
-    FU_EACH(g, 9,
-        g_t[g] = FU_NUMBER(0.0);)
-    FU_EACH(g, 9,
-        g_r[g] = FU_NUMBER(0.0);)
-    FU_EACH(g, 9,
-        g_v[g] = FU_NUMBER(0.0);)
+    FU_EACH(g, 3,
+        f_t[3*g] = d_t0_F[g];
+        f_t[3*g + 1] = d_t1_F[g];
+        f_t[3*g + 2] = d_t2_F[g];)
+    FU_PAIRS(row, col, 3, f_t_rate[3*row + col] = FU_NUMBER(0.0);)
+    f_r[0] = G[0]*(G[0]*d_material_x_F_x + G[3]*d_material_y_F_x + G[6]*d_material_z_F_x) + G[3]*(G[1]*d_material_x_F_x + G[4]*d_material_y_F_x + G[7]*d_material_z_F_x) + G[6]*(G[2]*d_material_x_F_x + G[5]*d_material_y_F_x + G[8]*d_material_z_F_x) + c_place[0]*d_wet0_F[0];
+    f_r[1] = G[1]*(G[0]*d_material_x_F_x + G[3]*d_material_y_F_x + G[6]*d_material_z_F_x) + G[4]*(G[1]*d_material_x_F_x + G[4]*d_material_y_F_x + G[7]*d_material_z_F_x) + G[7]*(G[2]*d_material_x_F_x + G[5]*d_material_y_F_x + G[8]*d_material_z_F_x) + c_place[1]*d_wet0_F[0];
+    f_r[2] = G[2]*(G[0]*d_material_x_F_x + G[3]*d_material_y_F_x + G[6]*d_material_z_F_x) + G[5]*(G[1]*d_material_x_F_x + G[4]*d_material_y_F_x + G[7]*d_material_z_F_x) + G[8]*(G[2]*d_material_x_F_x + G[5]*d_material_y_F_x + G[8]*d_material_z_F_x) + c_place[2]*d_wet0_F[0];
+    f_r[3] = G[0]*(G[0]*d_material_x_F_y + G[3]*d_material_y_F_y + G[6]*d_material_z_F_y) + G[3]*(G[1]*d_material_x_F_y + G[4]*d_material_y_F_y + G[7]*d_material_z_F_y) + G[6]*(G[2]*d_material_x_F_y + G[5]*d_material_y_F_y + G[8]*d_material_z_F_y) + c_place[0]*d_wet0_F[1];
+    f_r[4] = G[1]*(G[0]*d_material_x_F_y + G[3]*d_material_y_F_y + G[6]*d_material_z_F_y) + G[4]*(G[1]*d_material_x_F_y + G[4]*d_material_y_F_y + G[7]*d_material_z_F_y) + G[7]*(G[2]*d_material_x_F_y + G[5]*d_material_y_F_y + G[8]*d_material_z_F_y) + c_place[1]*d_wet0_F[1];
+    f_r[5] = G[2]*(G[0]*d_material_x_F_y + G[3]*d_material_y_F_y + G[6]*d_material_z_F_y) + G[5]*(G[1]*d_material_x_F_y + G[4]*d_material_y_F_y + G[7]*d_material_z_F_y) + G[8]*(G[2]*d_material_x_F_y + G[5]*d_material_y_F_y + G[8]*d_material_z_F_y) + c_place[2]*d_wet0_F[1];
+    f_r[6] = G[0]*(G[0]*d_material_x_F_z + G[3]*d_material_y_F_z + G[6]*d_material_z_F_z) + G[3]*(G[1]*d_material_x_F_z + G[4]*d_material_y_F_z + G[7]*d_material_z_F_z) + G[6]*(G[2]*d_material_x_F_z + G[5]*d_material_y_F_z + G[8]*d_material_z_F_z) + c_place[0]*d_wet0_F[2];
+    f_r[7] = G[1]*(G[0]*d_material_x_F_z + G[3]*d_material_y_F_z + G[6]*d_material_z_F_z) + G[4]*(G[1]*d_material_x_F_z + G[4]*d_material_y_F_z + G[7]*d_material_z_F_z) + G[7]*(G[2]*d_material_x_F_z + G[5]*d_material_y_F_z + G[8]*d_material_z_F_z) + c_place[1]*d_wet0_F[2];
+    f_r[8] = G[2]*(G[0]*d_material_x_F_z + G[3]*d_material_y_F_z + G[6]*d_material_z_F_z) + G[5]*(G[1]*d_material_x_F_z + G[4]*d_material_y_F_z + G[7]*d_material_z_F_z) + G[8]*(G[2]*d_material_x_F_z + G[5]*d_material_y_F_z + G[8]*d_material_z_F_z) + c_place[2]*d_wet0_F[2];
+    FU_PAIRS(row, col, 3, f_v[3*row + col] = FU_NUMBER(0.0);)
+    FU_PAIRS(row, col, 3, g_t[3*row + col] = FU_NUMBER(0.0);)
+    FU_PAIRS(row, col, 3, g_r[3*row + col] = FU_NUMBER(0.0);)
+    FU_PAIRS(row, col, 3, g_v[3*row + col] = FU_NUMBER(0.0);)
 }
 
 #ifndef FU_BLOCK
-/* force and moment of the inertia of the fluid on a body by Morison's equation; 115 add, 148 mul */
+/* force and moment of the inertia of the fluid on a body by Morison's equation; 110 add, 139 mul */
 void drag_morison_of_point(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *moment, fu_real *power)
 {
     DRAG_ADDED_MASS
-    DRAG_MOTION_PAST_THE_FLUID
+    DRAG_MOTION_PAST_THE_FLUID_2
     DRAG_IMPULSE_ITS_RATE_AND_MOMENT
     /* force on the particle */
     const fu_real
-        past_rate_x = G[0]*w_x + G[1]*w_y + G[2]*w_z + w_rate_x,
-        past_rate_y = G[3]*w_x + G[4]*w_y + G[5]*w_z + w_rate_y,
-        past_rate_z = G[6]*w_x + G[7]*w_y + G[8]*w_z + w_rate_z,
+        past_rate_x = a[0] - material_x,
+        past_rate_y = a[1] - material_y,
+        past_rate_z = a[2] - material_z,
         F_x = wet[0]*(M_x[0]*past_rate_x + M_y[0]*past_rate_y + M_z[0]*past_rate_z - displaced*material_x),
         F_y = wet[0]*(M_x[1]*past_rate_x + M_y[1]*past_rate_y + M_z[1]*past_rate_z - displaced*material_y),
         F_z = wet[0]*(M_x[2]*past_rate_x + M_y[2]*past_rate_y + M_z[2]*past_rate_z - displaced*material_z),
-        c_rate = c_place_x*v[0] + c_place_y*v[1] + c_place_z*v[2];
+        c_rate = c_place_x*v[0] + c_place_y*v[1] + c_place_z*v[2] + wet[3];
     /* outputs */
     f[0] = F_x;
     f[1] = F_y;
@@ -2473,43 +2435,37 @@ void drag_morison_of_point(const fu_real *A, const fu_real *C, const fu_real *om
 #endif
 
 #ifndef FU_BLOCK
-/* derivatives of force and moment of the inertia of the fluid by Morison's equation (derivatives of Morison et al. 1950; Hall & Goupee 2015); 312 add, 462 mul */
+/* derivatives of force and moment of the inertia of the fluid by Morison's equation (derivatives of Morison et al. 1950; Hall & Goupee 2015); 276 add, 417 mul */
 void drag_morison_of_point_tangent(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_by, fu_real *moment_by)
 {
     (void)omega;
+    (void)v;
     DRAG_ADDED_MASS
     /* motion past the fluid */
-    fu_real w[3], c_place[3];
-    FU_EACH(i, 3, w[i] = -U[i] + v[i];)
-    const fu_real
-        w_rate_x = -G[0]*v[0] - G[1]*v[1] - G[2]*v[2] - U_rate[0] + a[0],
-        w_rate_y = -G[3]*v[0] - G[4]*v[1] - G[5]*v[2] - U_rate[1] + a[1],
-        w_rate_z = -G[6]*v[0] - G[7]*v[1] - G[8]*v[2] - U_rate[2] + a[2],
-        material_x = G[0]*U[0] + G[1]*U[1] + G[2]*U[2] + U_rate[0],
-        material_y = G[3]*U[0] + G[4]*U[1] + G[5]*U[2] + U_rate[1],
-        material_z = G[6]*U[0] + G[7]*U[1] + G[8]*U[2] + U_rate[2];
+    fu_real material[3], c_place[3];
+    material[0] = G[0]*U[0] + G[1]*U[1] + G[2]*U[2] + U_rate[0];
+    material[1] = G[3]*U[0] + G[4]*U[1] + G[5]*U[2] + U_rate[1];
+    material[2] = G[6]*U[0] + G[7]*U[1] + G[8]*U[2] + U_rate[2];
     FU_EACH(i, 3, c_place[i] = up[i]*wet[1];)
     /* force on the particle */
-    const fu_real
-        past_rate_x = G[0]*w[0] + G[1]*w[1] + G[2]*w[2] + w_rate_x,
-        past_rate_y = G[3]*w[0] + G[4]*w[1] + G[5]*w[2] + w_rate_y,
-        past_rate_z = G[6]*w[0] + G[7]*w[1] + G[8]*w[2] + w_rate_z;
+    fu_real past_rate[3];
+    FU_EACH(i, 3, past_rate[i] = a[i] - material[i];)
     /* derivatives */
     fu_real d_th3_CM1[2], d_th3_CM2[2], d_th3_CM3[2], d_th3_M3[2];
     DRAG_PART_OF_DERIVATIVES_10
-    const fu_real d_th1_F_x = d_th1_M1_y*past_rate_y*wet[0] + d_th1_M1_z*past_rate_z*wet[0];
+    const fu_real d_th1_F_x = d_th1_M1_y*past_rate[1]*wet[0] + d_th1_M1_z*past_rate[2]*wet[0];
     DRAG_PART_OF_DERIVATIVES_11
-    const fu_real d_th1_F_y = d_th1_M2_x*past_rate_x*wet[0] + d_th1_M2_y*past_rate_y*wet[0] + d_th1_M2_z*past_rate_z*wet[0];
+    const fu_real d_th1_F_y = d_th1_M2_x*past_rate[0]*wet[0] + d_th1_M2_y*past_rate[1]*wet[0] + d_th1_M2_z*past_rate[2]*wet[0];
     DRAG_PART_OF_DERIVATIVES_12
-    const fu_real d_th1_F_z = d_th1_M3_x*past_rate_x*wet[0] + d_th1_M3_y*past_rate_y*wet[0] + d_th1_M3_z*past_rate_z*wet[0];
+    const fu_real d_th1_F_z = d_th1_M3_x*past_rate[0]*wet[0] + d_th1_M3_y*past_rate[1]*wet[0] + d_th1_M3_z*past_rate[2]*wet[0];
     DRAG_PART_OF_DERIVATIVES_13
     const fu_real
-        d_th2_F_x = d_th2_M1_x*past_rate_x*wet[0] + d_th2_M1_y*past_rate_y*wet[0] + d_th2_M1_z*past_rate_z*wet[0],
+        d_th2_F_x = d_th2_M1_x*past_rate[0]*wet[0] + d_th2_M1_y*past_rate[1]*wet[0] + d_th2_M1_z*past_rate[2]*wet[0],
         d_th2_M2_x = A[3]*d_th2_CM1_x + A[4]*d_th2_CM2_x + A[5]*d_th2_CM3_x,
         d_th2_M2_z = A[3]*d_th2_CM1_z + A[4]*d_th2_CM2_z + A[5]*d_th2_CM3_z,
-        d_th2_F_y = d_th2_M2_x*past_rate_x*wet[0] + d_th2_M2_z*past_rate_z*wet[0];
+        d_th2_F_y = d_th2_M2_x*past_rate[0]*wet[0] + d_th2_M2_z*past_rate[2]*wet[0];
     DRAG_PART_OF_DERIVATIVES_14
-    const fu_real d_th2_F_z = d_th2_M3_x*past_rate_x*wet[0] + d_th2_M3_y*past_rate_y*wet[0] + d_th2_M3_z*past_rate_z*wet[0];
+    const fu_real d_th2_F_z = d_th2_M3_x*past_rate[0]*wet[0] + d_th2_M3_y*past_rate[1]*wet[0] + d_th2_M3_z*past_rate[2]*wet[0];
     d_th3_CM1[0] = -A[3]*C[0] - A[4]*C[1] - A[5]*C[2];
     d_th3_CM2[0] = -A[3]*C[3] - A[4]*C[4] - A[5]*C[5];
     d_th3_CM3[0] = -A[3]*C[6] - A[4]*C[7] - A[5]*C[8];
@@ -2520,64 +2476,44 @@ void drag_morison_of_point_tangent(const fu_real *A, const fu_real *C, const fu_
     const fu_real
         d_th3_M1_y = A[0]*d_th3_CM1[1] + A[1]*d_th3_CM2[1] + A[2]*d_th3_CM3[1] - A[3]*CM_y[0] - A[4]*CM_y[1] - A[5]*CM_y[2],
         d_th3_M1_z = -A[3]*CM_z[0] - A[4]*CM_z[1] - A[5]*CM_z[2],
-        d_th3_F_x = d_th3_M1_x*past_rate_x*wet[0] + d_th3_M1_y*past_rate_y*wet[0] + d_th3_M1_z*past_rate_z*wet[0],
+        d_th3_F_x = d_th3_M1_x*past_rate[0]*wet[0] + d_th3_M1_y*past_rate[1]*wet[0] + d_th3_M1_z*past_rate[2]*wet[0],
         d_th3_M2_x = A[0]*CM_x[0] + A[1]*CM_x[1] + A[2]*CM_x[2] + A[3]*d_th3_CM1[0] + A[4]*d_th3_CM2[0] + A[5]*d_th3_CM3[0],
         d_th3_M2_y = A[0]*CM_y[0] + A[1]*CM_y[1] + A[2]*CM_y[2] + A[3]*d_th3_CM1[1] + A[4]*d_th3_CM2[1] + A[5]*d_th3_CM3[1],
         d_th3_M2_z = A[0]*CM_z[0] + A[1]*CM_z[1] + A[2]*CM_z[2],
-        d_th3_F_y = d_th3_M2_x*past_rate_x*wet[0] + d_th3_M2_y*past_rate_y*wet[0] + d_th3_M2_z*past_rate_z*wet[0];
+        d_th3_F_y = d_th3_M2_x*past_rate[0]*wet[0] + d_th3_M2_y*past_rate[1]*wet[0] + d_th3_M2_z*past_rate[2]*wet[0];
     FU_EACH(i, 2, d_th3_M3[i] = A[6]*d_th3_CM1[i] + A[7]*d_th3_CM2[i] + A[8]*d_th3_CM3[i];)
     const fu_real
-        d_th3_F_z = d_th3_M3[0]*past_rate_x*wet[0] + d_th3_M3[1]*past_rate_y*wet[0],
-        d_w_x_F_x = G[0]*M_x[0]*wet[0] + G[3]*M_y[0]*wet[0] + G[6]*M_z[0]*wet[0],
-        d_w_x_F_y = G[0]*M_x[1]*wet[0] + G[3]*M_y[1]*wet[0] + G[6]*M_z[1]*wet[0],
-        d_w_x_F_z = G[0]*M_x[2]*wet[0] + G[3]*M_y[2]*wet[0] + G[6]*M_z[2]*wet[0],
-        d_w_y_F_x = G[1]*M_x[0]*wet[0] + G[4]*M_y[0]*wet[0] + G[7]*M_z[0]*wet[0],
-        d_w_y_F_y = G[1]*M_x[1]*wet[0] + G[4]*M_y[1]*wet[0] + G[7]*M_z[1]*wet[0],
-        d_w_y_F_z = G[1]*M_x[2]*wet[0] + G[4]*M_y[2]*wet[0] + G[7]*M_z[2]*wet[0],
-        d_w_z_F_x = G[2]*M_x[0]*wet[0] + G[5]*M_y[0]*wet[0] + G[8]*M_z[0]*wet[0],
-        d_w_z_F_y = G[2]*M_x[1]*wet[0] + G[5]*M_y[1]*wet[0] + G[8]*M_z[1]*wet[0],
-        d_w_z_F_z = G[2]*M_x[2]*wet[0] + G[5]*M_y[2]*wet[0] + G[8]*M_z[2]*wet[0],
-        d_w_rate_x_F_x = M_x[0]*wet[0],
-        d_w_rate_x_F_y = M_x[1]*wet[0],
-        d_w_rate_x_F_z = M_x[2]*wet[0],
-        d_w_rate_y_F_x = M_y[0]*wet[0],
-        d_w_rate_y_F_y = M_y[1]*wet[0],
-        d_w_rate_y_F_z = M_y[2]*wet[0],
-        d_w_rate_z_F_x = M_z[0]*wet[0],
-        d_w_rate_z_F_y = M_z[1]*wet[0],
-        d_w_rate_z_F_z = M_z[2]*wet[0],
-        d_material_x_F_x = -(displaced*wet[0]),
-        d_material_y_F_y = -(displaced*wet[0]),
-        d_material_z_F_z = -(displaced*wet[0]),
-        d_wet0_F_x = M_x[0]*past_rate_x + M_y[0]*past_rate_y + M_z[0]*past_rate_z - displaced*material_x,
-        d_wet0_F_y = M_x[1]*past_rate_x + M_y[1]*past_rate_y + M_z[1]*past_rate_z - displaced*material_y,
-        d_wet0_F_z = M_x[2]*past_rate_x + M_y[2]*past_rate_y + M_z[2]*past_rate_z - displaced*material_z;
+        d_th3_F_z = d_th3_M3[0]*past_rate[0]*wet[0] + d_th3_M3[1]*past_rate[1]*wet[0],
+        d_material_x_F_x = -M_x[0]*wet[0] - displaced*wet[0],
+        d_material_x_F_y = -(M_x[1]*wet[0]),
+        d_material_x_F_z = -(M_x[2]*wet[0]),
+        d_material_y_F_x = -(M_y[0]*wet[0]),
+        d_material_y_F_y = -M_y[1]*wet[0] - displaced*wet[0],
+        d_material_y_F_z = -(M_y[2]*wet[0]),
+        d_material_z_F_x = -(M_z[0]*wet[0]),
+        d_material_z_F_y = -(M_z[1]*wet[0]),
+        d_material_z_F_z = -M_z[2]*wet[0] - displaced*wet[0],
+        d_wet0_F_x = M_x[0]*past_rate[0] + M_y[0]*past_rate[1] + M_z[0]*past_rate[2] - displaced*material[0],
+        d_wet0_F_y = M_x[1]*past_rate[0] + M_y[1]*past_rate[1] + M_z[1]*past_rate[2] - displaced*material[1],
+        d_wet0_F_z = M_x[2]*past_rate[0] + M_y[2]*past_rate[1] + M_z[2]*past_rate[2] - displaced*material[2];
     /* outputs */
-    f_by[0] = G[0]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[3]*(G[1]*d_material_x_F_x - d_w_y_F_x) + G[6]*(G[2]*d_material_x_F_x - d_w_z_F_x) + c_place[0]*d_wet0_F_x;
-    f_by[1] = G[1]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[4]*(G[1]*d_material_x_F_x - d_w_y_F_x) + G[7]*(G[2]*d_material_x_F_x - d_w_z_F_x) + c_place[1]*d_wet0_F_x;
-    f_by[2] = G[2]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[5]*(G[1]*d_material_x_F_x - d_w_y_F_x) + G[8]*(G[2]*d_material_x_F_x - d_w_z_F_x) + c_place[2]*d_wet0_F_x;
-    f_by[3] = -G[0]*d_w_rate_x_F_x - G[3]*d_w_rate_y_F_x - G[6]*d_w_rate_z_F_x + d_w_x_F_x;
-    f_by[4] = -G[1]*d_w_rate_x_F_x - G[4]*d_w_rate_y_F_x - G[7]*d_w_rate_z_F_x + d_w_y_F_x;
-    f_by[5] = -G[2]*d_w_rate_x_F_x - G[5]*d_w_rate_y_F_x - G[8]*d_w_rate_z_F_x + d_w_z_F_x;
+    f_by[0] = G[0]*(G[0]*d_material_x_F_x + G[3]*d_material_y_F_x + G[6]*d_material_z_F_x) + G[3]*(G[1]*d_material_x_F_x + G[4]*d_material_y_F_x + G[7]*d_material_z_F_x) + G[6]*(G[2]*d_material_x_F_x + G[5]*d_material_y_F_x + G[8]*d_material_z_F_x) + c_place[0]*d_wet0_F_x;
+    f_by[1] = G[1]*(G[0]*d_material_x_F_x + G[3]*d_material_y_F_x + G[6]*d_material_z_F_x) + G[4]*(G[1]*d_material_x_F_x + G[4]*d_material_y_F_x + G[7]*d_material_z_F_x) + G[7]*(G[2]*d_material_x_F_x + G[5]*d_material_y_F_x + G[8]*d_material_z_F_x) + c_place[1]*d_wet0_F_x;
+    f_by[2] = G[2]*(G[0]*d_material_x_F_x + G[3]*d_material_y_F_x + G[6]*d_material_z_F_x) + G[5]*(G[1]*d_material_x_F_x + G[4]*d_material_y_F_x + G[7]*d_material_z_F_x) + G[8]*(G[2]*d_material_x_F_x + G[5]*d_material_y_F_x + G[8]*d_material_z_F_x) + c_place[2]*d_wet0_F_x;
+    FU_PAIRS(i, j, 3, f_by[12*i + j + 3] = 0.0;)
     f_by[6] = d_th1_F_x;
     f_by[7] = d_th2_F_x;
     f_by[8] = d_th3_F_x;
     FU_PAIRS(i, j, 3, f_by[12*i + j + 9] = 0.0;)
-    f_by[12] = G[0]*(G[3]*d_material_y_F_y - d_w_x_F_y) + G[3]*(G[4]*d_material_y_F_y - d_w_y_F_y) + G[6]*(G[5]*d_material_y_F_y - d_w_z_F_y) + c_place[0]*d_wet0_F_y;
-    f_by[13] = G[1]*(G[3]*d_material_y_F_y - d_w_x_F_y) + G[4]*(G[4]*d_material_y_F_y - d_w_y_F_y) + G[7]*(G[5]*d_material_y_F_y - d_w_z_F_y) + c_place[1]*d_wet0_F_y;
-    f_by[14] = G[2]*(G[3]*d_material_y_F_y - d_w_x_F_y) + G[5]*(G[4]*d_material_y_F_y - d_w_y_F_y) + G[8]*(G[5]*d_material_y_F_y - d_w_z_F_y) + c_place[2]*d_wet0_F_y;
-    f_by[15] = -G[0]*d_w_rate_x_F_y - G[3]*d_w_rate_y_F_y - G[6]*d_w_rate_z_F_y + d_w_x_F_y;
-    f_by[16] = -G[1]*d_w_rate_x_F_y - G[4]*d_w_rate_y_F_y - G[7]*d_w_rate_z_F_y + d_w_y_F_y;
-    f_by[17] = -G[2]*d_w_rate_x_F_y - G[5]*d_w_rate_y_F_y - G[8]*d_w_rate_z_F_y + d_w_z_F_y;
+    f_by[12] = G[0]*(G[0]*d_material_x_F_y + G[3]*d_material_y_F_y + G[6]*d_material_z_F_y) + G[3]*(G[1]*d_material_x_F_y + G[4]*d_material_y_F_y + G[7]*d_material_z_F_y) + G[6]*(G[2]*d_material_x_F_y + G[5]*d_material_y_F_y + G[8]*d_material_z_F_y) + c_place[0]*d_wet0_F_y;
+    f_by[13] = G[1]*(G[0]*d_material_x_F_y + G[3]*d_material_y_F_y + G[6]*d_material_z_F_y) + G[4]*(G[1]*d_material_x_F_y + G[4]*d_material_y_F_y + G[7]*d_material_z_F_y) + G[7]*(G[2]*d_material_x_F_y + G[5]*d_material_y_F_y + G[8]*d_material_z_F_y) + c_place[1]*d_wet0_F_y;
+    f_by[14] = G[2]*(G[0]*d_material_x_F_y + G[3]*d_material_y_F_y + G[6]*d_material_z_F_y) + G[5]*(G[1]*d_material_x_F_y + G[4]*d_material_y_F_y + G[7]*d_material_z_F_y) + G[8]*(G[2]*d_material_x_F_y + G[5]*d_material_y_F_y + G[8]*d_material_z_F_y) + c_place[2]*d_wet0_F_y;
     f_by[18] = d_th1_F_y;
     f_by[19] = d_th2_F_y;
     f_by[20] = d_th3_F_y;
-    f_by[24] = G[0]*(G[6]*d_material_z_F_z - d_w_x_F_z) + G[3]*(G[7]*d_material_z_F_z - d_w_y_F_z) + G[6]*(G[8]*d_material_z_F_z - d_w_z_F_z) + c_place[0]*d_wet0_F_z;
-    f_by[25] = G[1]*(G[6]*d_material_z_F_z - d_w_x_F_z) + G[4]*(G[7]*d_material_z_F_z - d_w_y_F_z) + G[7]*(G[8]*d_material_z_F_z - d_w_z_F_z) + c_place[1]*d_wet0_F_z;
-    f_by[26] = G[2]*(G[6]*d_material_z_F_z - d_w_x_F_z) + G[5]*(G[7]*d_material_z_F_z - d_w_y_F_z) + G[8]*(G[8]*d_material_z_F_z - d_w_z_F_z) + c_place[2]*d_wet0_F_z;
-    f_by[27] = -G[0]*d_w_rate_x_F_z - G[3]*d_w_rate_y_F_z - G[6]*d_w_rate_z_F_z + d_w_x_F_z;
-    f_by[28] = -G[1]*d_w_rate_x_F_z - G[4]*d_w_rate_y_F_z - G[7]*d_w_rate_z_F_z + d_w_y_F_z;
-    f_by[29] = -G[2]*d_w_rate_x_F_z - G[5]*d_w_rate_y_F_z - G[8]*d_w_rate_z_F_z + d_w_z_F_z;
+    f_by[24] = G[0]*(G[0]*d_material_x_F_z + G[3]*d_material_y_F_z + G[6]*d_material_z_F_z) + G[3]*(G[1]*d_material_x_F_z + G[4]*d_material_y_F_z + G[7]*d_material_z_F_z) + G[6]*(G[2]*d_material_x_F_z + G[5]*d_material_y_F_z + G[8]*d_material_z_F_z) + c_place[0]*d_wet0_F_z;
+    f_by[25] = G[1]*(G[0]*d_material_x_F_z + G[3]*d_material_y_F_z + G[6]*d_material_z_F_z) + G[4]*(G[1]*d_material_x_F_z + G[4]*d_material_y_F_z + G[7]*d_material_z_F_z) + G[7]*(G[2]*d_material_x_F_z + G[5]*d_material_y_F_z + G[8]*d_material_z_F_z) + c_place[1]*d_wet0_F_z;
+    f_by[26] = G[2]*(G[0]*d_material_x_F_z + G[3]*d_material_y_F_z + G[6]*d_material_z_F_z) + G[5]*(G[1]*d_material_x_F_z + G[4]*d_material_y_F_z + G[7]*d_material_z_F_z) + G[8]*(G[2]*d_material_x_F_z + G[5]*d_material_y_F_z + G[8]*d_material_z_F_z) + c_place[2]*d_wet0_F_z;
     f_by[30] = d_th1_F_z;
     f_by[31] = d_th2_F_z;
     f_by[32] = d_th3_F_z;
@@ -2627,5 +2563,75 @@ void drag_wet_column(const fu_real *u, const fu_real *delta, fu_real *e, fu_real
     c[0] = 0.125*(delta[0] + u[0] + 1.0)*(delta[0] + u[0] + 1.0)/delta[0];
     c_u[0] = 0.25*(delta[0] + u[0] + 1.0)/delta[0];
     c_uu[0] = 0.25/delta[0];
+}
+#endif
+
+#ifndef FU_BLOCK
+/* elevation of the surface by a wave (Airy 1845; Dean & Dalrymple 1991); 4 add, 11 mul, 1 cos, 1 sin */
+void drag_wave_elevation(const fu_real *place, fu_real time, const fu_real *k, const fu_real *wave, fu_real *eta, fu_real *eta_t, fu_real *eta_r)
+{
+    /* phase */
+    const fu_real
+        theta = k[0]*place[0] + k[1]*place[1] + k[2]*place[2] - time*wave[1] + wave[2],
+        cosine = FU_COS(theta),
+        sine = FU_SIN(theta),
+        slope = sine*wave[0];
+    /* outputs */
+    eta[0] = cosine*wave[0];
+    eta_t[0] = sine*wave[0]*wave[1];
+    eta_r[0] = -(k[0]*slope);
+    eta_r[1] = -(k[1]*slope);
+    eta_r[2] = -(k[2]*slope);
+}
+#endif
+
+#ifndef FU_BLOCK
+/* height of the velocity by Wheeler's rule (Wheeler 1970); 10 add, 13 mul, 4 div */
+void drag_wave_stretching(fu_real height, fu_real eta, fu_real eta_t, const fu_real *eta_r, const fu_real *up, fu_real inv_depth, fu_real *Z, fu_real *Z_t, fu_real *Z_r)
+{
+    /* height */
+    const fu_real
+        stretched = (-eta + height)/((eta*inv_depth + 1.0)),
+        d_height_stretched = 1.0/(eta*inv_depth + 1.0),
+        d_eta_stretched = -inv_depth*(-eta + height)/((eta*inv_depth + 1.0)*(eta*inv_depth + 1.0)) - 1.0/(eta*inv_depth + 1.0);
+    /* outputs */
+    Z[0] = stretched;
+    Z_t[0] = d_eta_stretched*eta_t;
+    Z_r[0] = d_eta_stretched*eta_r[0] + d_height_stretched*up[0];
+    Z_r[1] = d_eta_stretched*eta_r[1] + d_height_stretched*up[1];
+    Z_r[2] = d_eta_stretched*eta_r[2] + d_height_stretched*up[2];
+}
+#endif
+
+#ifndef FU_BLOCK
+/* velocity of the fluid in a wave (Airy 1845; Dean & Dalrymple 1991); 28 add, 76 mul, 3 div, 1 cos, 1 sin, 1 exp */
+void drag_wave_velocity(const fu_real *place, fu_real time, const fu_real *k, const fu_real *wave, const fu_real *up, fu_real Z, fu_real Z_t, const fu_real *Z_r, fu_real *potential, fu_real *U, fu_real *U_t, fu_real *G)
+{
+    /* phase */
+    const fu_real
+        theta = k[0]*place[0] + k[1]*place[1] + k[2]*place[2] - time*wave[1] + wave[2],
+        cosine = FU_COS(theta),
+        sine = FU_SIN(theta);
+    /* decay with depth */
+    fu_real ahead[3];
+    const fu_real
+        grow = FU_EXP(Z*wave[3]),
+        scale = wave[0]*wave[1]/(-wave[4] + 1.0),
+        mirrored = wave[4]/grow,
+        inv_k = 1.0/wave[3];
+    FU_EACH(i, 3, ahead[i] = inv_k*k[i];)
+    const fu_real
+        C = scale*(grow + mirrored),
+        S = scale*(grow - mirrored);
+    /* velocity, by phase and height */
+    fu_real V[3], V_theta[3], V_Z[3];
+    FU_EACH(i, 3, V[i] = C*ahead[i]*cosine + S*sine*up[i];)
+    FU_EACH(i, 3, V_theta[i] = -C*ahead[i]*sine + S*cosine*up[i];)
+    FU_EACH(i, 3, V_Z[i] = wave[3]*(C*sine*up[i] + S*ahead[i]*cosine);)
+    /* outputs */
+    potential[0] = C*inv_k*sine;
+    FU_EACH(i, 3, U[i] = V[i];)
+    FU_EACH(i, 3, U_t[i] = V_Z[i]*Z_t - V_theta[i]*wave[1];)
+    FU_PAIRS(i, j, 3, G[3*i + j] = V_Z[i]*Z_r[j] + V_theta[i]*k[j];)
 }
 #endif

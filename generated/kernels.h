@@ -1099,20 +1099,20 @@ fu_drag_impulse_of_cable_kernel planar_drag_impulse_of_cable;
 
 typedef void fu_drag_inertia_of_cable_kernel(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *g, fu_real *power);
 /* force of the inertia of the fluid on a length of cable: t [1]; t_rate [1/s]; m [kg/m]; displaced [kg/m]; v [m/s];
- * a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2]; up [1] -> f [N/m]; g [N]; power [W/m] */
-/* t 3, t_rate 3, m 2, v 3, a 3, U 3, U_rate 3, G 3x3, wet 3, up 3, f 3, g 3, power 1 */
+ * a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2, 1/s]; up [1] -> f [N/m]; g [N]; power [W/m] */
+/* t 3, t_rate 3, m 2, v 3, a 3, U 3, U_rate 3, G 3x3, wet 4, up 3, f 3, g 3, power 1 */
 fu_drag_inertia_of_cable_kernel drag_inertia_of_cable;
-/* t 2, t_rate 2, m 2, v 2, a 2, U 2, U_rate 2, G 2x2, wet 3, up 2, f 2, g 2, power 1 */
+/* t 2, t_rate 2, m 2, v 2, a 2, U 2, U_rate 2, G 2x2, wet 4, up 2, f 2, g 2, power 1 */
 fu_drag_inertia_of_cable_kernel planar_drag_inertia_of_cable;
 
 typedef void fu_drag_inertia_of_cable_tangent_kernel(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_t, fu_real *f_t_rate, fu_real *f_r, fu_real *f_v, fu_real *g_t, fu_real *g_r, fu_real *g_v);
 /* derivatives of the force of the inertia of the fluid on a cable: t [1]; t_rate [1/s]; m [kg/m]; displaced [kg/m];
- * v [m/s]; a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2]; up [1] -> f_t [SI]; f_t_rate [SI]; f_r
- * [SI]; f_v [SI]; g_t [SI]; g_r [SI]; g_v [SI] */
-/* t 3, t_rate 3, m 2, v 3, a 3, U 3, U_rate 3, G 3x3, wet 3, up 3, f_t 3x3, f_t_rate 3x3, f_r 3x3, f_v 3x3, g_t 3x3,
+ * v [m/s]; a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2, 1/s]; up [1] -> f_t [SI]; f_t_rate [SI];
+ * f_r [SI]; f_v [SI]; g_t [SI]; g_r [SI]; g_v [SI] */
+/* t 3, t_rate 3, m 2, v 3, a 3, U 3, U_rate 3, G 3x3, wet 4, up 3, f_t 3x3, f_t_rate 3x3, f_r 3x3, f_v 3x3, g_t 3x3,
  * g_r 3x3, g_v 3x3 */
 fu_drag_inertia_of_cable_tangent_kernel drag_inertia_of_cable_tangent;
-/* t 2, t_rate 2, m 2, v 2, a 2, U 2, U_rate 2, G 2x2, wet 3, up 2, f_t 2x2, f_t_rate 2x2, f_r 2x2, f_v 2x2, g_t 2x2,
+/* t 2, t_rate 2, m 2, v 2, a 2, U 2, U_rate 2, G 2x2, wet 4, up 2, f_t 2x2, f_t_rate 2x2, f_r 2x2, f_v 2x2, g_t 2x2,
  * g_r 2x2, g_v 2x2 */
 fu_drag_inertia_of_cable_tangent_kernel planar_drag_inertia_of_cable_tangent;
 
@@ -1126,22 +1126,22 @@ fu_drag_inertia_step_kernel planar_drag_inertia_step;
 
 typedef void fu_drag_inertia_of_span_kernel(fu_real growth, const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *y, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *T_r, fu_real *T_t, fu_real *T_v, fu_real *rate, fu_real *energy, fu_real *power);
 /* kinetic energy of the fluid along a rope, and its derivatives: growth [1/s]; t [1]; t_rate [1/s]; m [kg/m];
- * displaced [kg/m]; v [m/s]; y [m/s]; a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2]; up [1] ->
- * T_r [N/m]; T_t [N]; T_v [kg/s]; rate [N/m]; energy [J/m]; power [W/m] */
-/* t 3, t_rate 3, m 2, v 3, y 3, a 3, U 3, U_rate 3, G 3x3, wet 3, up 3, T_r 3, T_t 3, T_v 3, rate 3, energy 1, power
+ * displaced [kg/m]; v [m/s]; y [m/s]; a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2, 1/s]; up [1]
+ * -> T_r [N/m]; T_t [N]; T_v [kg/s]; rate [N/m]; energy [J/m]; power [W/m] */
+/* t 3, t_rate 3, m 2, v 3, y 3, a 3, U 3, U_rate 3, G 3x3, wet 4, up 3, T_r 3, T_t 3, T_v 3, rate 3, energy 1, power
  * 1 */
 fu_drag_inertia_of_span_kernel drag_inertia_of_span;
-/* t 2, t_rate 2, m 2, v 2, y 2, a 2, U 2, U_rate 2, G 2x2, wet 3, up 2, T_r 2, T_t 2, T_v 2, rate 2, energy 1, power
+/* t 2, t_rate 2, m 2, v 2, y 2, a 2, U 2, U_rate 2, G 2x2, wet 4, up 2, T_r 2, T_t 2, T_v 2, rate 2, energy 1, power
  * 1 */
 fu_drag_inertia_of_span_kernel planar_drag_inertia_of_span;
 
 typedef void fu_drag_inertia_of_span_tangent_kernel(fu_real growth, const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *y, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *second, fu_real *rate_by);
 /* second derivatives of the kinetic energy of the fluid along a rope, and derivatives of the rate of the impulse:
  * growth [1/s]; t [1]; t_rate [1/s]; m [kg/m]; displaced [kg/m]; v [m/s]; y [m/s]; a [m/s^2]; U [m/s]; U_rate
- * [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2]; up [1] -> second [SI]; rate_by [SI] */
-/* t 3, t_rate 3, m 2, v 3, y 3, a 3, U 3, U_rate 3, G 3x3, wet 3, up 3, second 9x9, rate_by 3x18 */
+ * [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2, 1/s]; up [1] -> second [SI]; rate_by [SI] */
+/* t 3, t_rate 3, m 2, v 3, y 3, a 3, U 3, U_rate 3, G 3x3, wet 4, up 3, second 9x9, rate_by 3x18 */
 fu_drag_inertia_of_span_tangent_kernel drag_inertia_of_span_tangent;
-/* t 2, t_rate 2, m 2, v 2, y 2, a 2, U 2, U_rate 2, G 2x2, wet 3, up 2, second 6x6, rate_by 2x12 */
+/* t 2, t_rate 2, m 2, v 2, y 2, a 2, U 2, U_rate 2, G 2x2, wet 4, up 2, second 6x6, rate_by 2x12 */
 fu_drag_inertia_of_span_tangent_kernel planar_drag_inertia_of_span_tangent;
 
 typedef void fu_drag_impulse_of_point_kernel(const fu_real *A, const fu_real *C, const fu_real *w, fu_real *p, fu_real *M);
@@ -1153,18 +1153,18 @@ fu_drag_impulse_of_point_kernel planar_drag_impulse_of_point;
 
 typedef void fu_drag_inertia_of_point_kernel(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *moment, fu_real *power);
 /* force and moment of the inertia of the fluid on a body: A [1]; C [kg]; omega [rad/s]; displaced [kg]; v [m/s]; a
- * [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2]; up [1] -> f [N]; moment [N m]; power [W] */
-/* A 3x3, C 3x3, omega 3, v 3, a 3, U 3, U_rate 3, G 3x3, wet 3, up 3, f 3, moment 3, power 1 */
+ * [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2, 1/s]; up [1] -> f [N]; moment [N m]; power [W] */
+/* A 3x3, C 3x3, omega 3, v 3, a 3, U 3, U_rate 3, G 3x3, wet 4, up 3, f 3, moment 3, power 1 */
 fu_drag_inertia_of_point_kernel drag_inertia_of_point;
-/* A 2x2, C 2x2, omega 1, v 2, a 2, U 2, U_rate 2, G 2x2, wet 3, up 2, f 2, moment 1, power 1 */
+/* A 2x2, C 2x2, omega 1, v 2, a 2, U 2, U_rate 2, G 2x2, wet 4, up 2, f 2, moment 1, power 1 */
 fu_drag_inertia_of_point_kernel planar_drag_inertia_of_point;
 
 typedef void fu_drag_inertia_of_point_tangent_kernel(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_by, fu_real *moment_by);
 /* derivatives of force and moment of the inertia of the fluid: A [1]; C [kg]; omega [rad/s]; displaced [kg]; v
- * [m/s]; a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2]; up [1] -> f_by [SI]; moment_by [SI] */
-/* A 3x3, C 3x3, omega 3, v 3, a 3, U 3, U_rate 3, G 3x3, wet 3, up 3, f_by 3x12, moment_by 3x12 */
+ * [m/s]; a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2, 1/s]; up [1] -> f_by [SI]; moment_by [SI] */
+/* A 3x3, C 3x3, omega 3, v 3, a 3, U 3, U_rate 3, G 3x3, wet 4, up 3, f_by 3x12, moment_by 3x12 */
 fu_drag_inertia_of_point_tangent_kernel drag_inertia_of_point_tangent;
-/* A 2x2, C 2x2, omega 1, v 2, a 2, U 2, U_rate 2, G 2x2, wet 3, up 2, f_by 2x6, moment_by 1x6 */
+/* A 2x2, C 2x2, omega 1, v 2, a 2, U 2, U_rate 2, G 2x2, wet 4, up 2, f_by 2x6, moment_by 1x6 */
 fu_drag_inertia_of_point_tangent_kernel planar_drag_inertia_of_point_tangent;
 
 typedef void fu_drag_inertia_of_point_step_kernel(const fu_real *A, const fu_real *A_next, const fu_real *C, const fu_real *w, const fu_real *w_next, const fu_real *theta, const fu_real *turning, fu_real *dp, fu_real *p, fu_real *moment, fu_real *more);
@@ -1177,40 +1177,40 @@ fu_drag_inertia_of_point_step_kernel planar_drag_inertia_of_point_step;
 
 typedef void fu_drag_morison_of_cable_kernel(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *g, fu_real *power);
 /* force of the inertia of the fluid on a length of cable by Morison's equation: t [1]; t_rate [1/s]; m [kg/m];
- * displaced [kg/m]; v [m/s]; a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2]; up [1] -> f [N/m]; g
- * [N]; power [W/m] */
-/* t 3, t_rate 3, m 2, v 3, a 3, U 3, U_rate 3, G 3x3, wet 3, up 3, f 3, g 3, power 1 */
+ * displaced [kg/m]; v [m/s]; a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2, 1/s]; up [1] -> f
+ * [N/m]; g [N]; power [W/m] */
+/* t 3, t_rate 3, m 2, v 3, a 3, U 3, U_rate 3, G 3x3, wet 4, up 3, f 3, g 3, power 1 */
 fu_drag_morison_of_cable_kernel drag_morison_of_cable;
-/* t 2, t_rate 2, m 2, v 2, a 2, U 2, U_rate 2, G 2x2, wet 3, up 2, f 2, g 2, power 1 */
+/* t 2, t_rate 2, m 2, v 2, a 2, U 2, U_rate 2, G 2x2, wet 4, up 2, f 2, g 2, power 1 */
 fu_drag_morison_of_cable_kernel planar_drag_morison_of_cable;
 
 typedef void fu_drag_morison_of_cable_tangent_kernel(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_t, fu_real *f_t_rate, fu_real *f_r, fu_real *f_v, fu_real *g_t, fu_real *g_r, fu_real *g_v);
 /* derivatives of the force of the inertia of the fluid on a cable by Morison's equation: t [1]; t_rate [1/s]; m
- * [kg/m]; displaced [kg/m]; v [m/s]; a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2]; up [1] -> f_t
- * [SI]; f_t_rate [SI]; f_r [SI]; f_v [SI]; g_t [SI]; g_r [SI]; g_v [SI] */
-/* t 3, t_rate 3, m 2, v 3, a 3, U 3, U_rate 3, G 3x3, wet 3, up 3, f_t 3x3, f_t_rate 3x3, f_r 3x3, f_v 3x3, g_t 3x3,
+ * [kg/m]; displaced [kg/m]; v [m/s]; a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2, 1/s]; up [1]
+ * -> f_t [SI]; f_t_rate [SI]; f_r [SI]; f_v [SI]; g_t [SI]; g_r [SI]; g_v [SI] */
+/* t 3, t_rate 3, m 2, v 3, a 3, U 3, U_rate 3, G 3x3, wet 4, up 3, f_t 3x3, f_t_rate 3x3, f_r 3x3, f_v 3x3, g_t 3x3,
  * g_r 3x3, g_v 3x3 */
 fu_drag_morison_of_cable_tangent_kernel drag_morison_of_cable_tangent;
-/* t 2, t_rate 2, m 2, v 2, a 2, U 2, U_rate 2, G 2x2, wet 3, up 2, f_t 2x2, f_t_rate 2x2, f_r 2x2, f_v 2x2, g_t 2x2,
+/* t 2, t_rate 2, m 2, v 2, a 2, U 2, U_rate 2, G 2x2, wet 4, up 2, f_t 2x2, f_t_rate 2x2, f_r 2x2, f_v 2x2, g_t 2x2,
  * g_r 2x2, g_v 2x2 */
 fu_drag_morison_of_cable_tangent_kernel planar_drag_morison_of_cable_tangent;
 
 typedef void fu_drag_morison_of_point_kernel(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *moment, fu_real *power);
 /* force and moment of the inertia of the fluid on a body by Morison's equation: A [1]; C [kg]; omega [rad/s];
- * displaced [kg]; v [m/s]; a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2]; up [1] -> f [N]; moment
- * [N m]; power [W] */
-/* A 3x3, C 3x3, omega 3, v 3, a 3, U 3, U_rate 3, G 3x3, wet 3, up 3, f 3, moment 3, power 1 */
+ * displaced [kg]; v [m/s]; a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2, 1/s]; up [1] -> f [N];
+ * moment [N m]; power [W] */
+/* A 3x3, C 3x3, omega 3, v 3, a 3, U 3, U_rate 3, G 3x3, wet 4, up 3, f 3, moment 3, power 1 */
 fu_drag_morison_of_point_kernel drag_morison_of_point;
-/* A 2x2, C 2x2, omega 1, v 2, a 2, U 2, U_rate 2, G 2x2, wet 3, up 2, f 2, moment 1, power 1 */
+/* A 2x2, C 2x2, omega 1, v 2, a 2, U 2, U_rate 2, G 2x2, wet 4, up 2, f 2, moment 1, power 1 */
 fu_drag_morison_of_point_kernel planar_drag_morison_of_point;
 
 typedef void fu_drag_morison_of_point_tangent_kernel(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_by, fu_real *moment_by);
 /* derivatives of force and moment of the inertia of the fluid by Morison's equation: A [1]; C [kg]; omega [rad/s];
- * displaced [kg]; v [m/s]; a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2]; up [1] -> f_by [SI];
- * moment_by [SI] */
-/* A 3x3, C 3x3, omega 3, v 3, a 3, U 3, U_rate 3, G 3x3, wet 3, up 3, f_by 3x12, moment_by 3x12 */
+ * displaced [kg]; v [m/s]; a [m/s^2]; U [m/s]; U_rate [m/s^2]; G [1/s]; wet [1, 1/m, 1/m^2, 1/s]; up [1] -> f_by
+ * [SI]; moment_by [SI] */
+/* A 3x3, C 3x3, omega 3, v 3, a 3, U 3, U_rate 3, G 3x3, wet 4, up 3, f_by 3x12, moment_by 3x12 */
 fu_drag_morison_of_point_tangent_kernel drag_morison_of_point_tangent;
-/* A 2x2, C 2x2, omega 1, v 2, a 2, U 2, U_rate 2, G 2x2, wet 3, up 2, f_by 2x6, moment_by 1x6 */
+/* A 2x2, C 2x2, omega 1, v 2, a 2, U 2, U_rate 2, G 2x2, wet 4, up 2, f_by 2x6, moment_by 1x6 */
 fu_drag_morison_of_point_tangent_kernel planar_drag_morison_of_point_tangent;
 
 typedef void fu_drag_wet_sphere_kernel(const fu_real *u, fu_real *e, fu_real *c, fu_real *c_u, fu_real *c_uu);
@@ -1227,6 +1227,30 @@ typedef void fu_drag_wet_column_kernel(const fu_real *u, const fu_real *delta, f
 /* wet part of a column at its lower end: u [1]; delta [1] -> e [1]; c [1]; c_u [1]; c_uu [1] */
 /* u 1, delta 1, e 1, c 1, c_u 1, c_uu 1 */
 fu_drag_wet_column_kernel drag_wet_column, planar_drag_wet_column;
+
+typedef void fu_drag_wave_elevation_kernel(const fu_real *place, fu_real time, const fu_real *k, const fu_real *wave, fu_real *eta, fu_real *eta_t, fu_real *eta_r);
+/* elevation of the surface by a wave: place [m]; time [s]; k [1/m]; wave [m, rad/s, rad, 1/m, 1] -> eta [m]; eta_t
+ * [m/s]; eta_r [1] */
+/* place 3, k 3, wave 5, eta 1, eta_t 1, eta_r 3 */
+fu_drag_wave_elevation_kernel drag_wave_elevation;
+/* place 2, k 2, wave 5, eta 1, eta_t 1, eta_r 2 */
+fu_drag_wave_elevation_kernel planar_drag_wave_elevation;
+
+typedef void fu_drag_wave_stretching_kernel(fu_real height, fu_real eta, fu_real eta_t, const fu_real *eta_r, const fu_real *up, fu_real inv_depth, fu_real *Z, fu_real *Z_t, fu_real *Z_r);
+/* height of the velocity by Wheeler's rule: height [m]; eta [m]; eta_t [m/s]; eta_r [1]; up [1]; inv_depth [1/m] ->
+ * Z [m]; Z_t [m/s]; Z_r [1] */
+/* eta_r 3, up 3, Z 1, Z_t 1, Z_r 3 */
+fu_drag_wave_stretching_kernel drag_wave_stretching;
+/* eta_r 2, up 2, Z 1, Z_t 1, Z_r 2 */
+fu_drag_wave_stretching_kernel planar_drag_wave_stretching;
+
+typedef void fu_drag_wave_velocity_kernel(const fu_real *place, fu_real time, const fu_real *k, const fu_real *wave, const fu_real *up, fu_real Z, fu_real Z_t, const fu_real *Z_r, fu_real *potential, fu_real *U, fu_real *U_t, fu_real *G);
+/* velocity of the fluid in a wave: place [m]; time [s]; k [1/m]; wave [m, rad/s, rad, 1/m, 1]; up [1]; Z [m]; Z_t
+ * [m/s]; Z_r [1] -> potential [m^2/s]; U [m/s]; U_t [m/s^2]; G [1/s] */
+/* place 3, k 3, wave 5, up 3, Z_r 3, potential 1, U 3, U_t 3, G 3x3 */
+fu_drag_wave_velocity_kernel drag_wave_velocity;
+/* place 2, k 2, wave 5, up 2, Z_r 2, potential 1, U 2, U_t 2, G 2x2 */
+fu_drag_wave_velocity_kernel planar_drag_wave_velocity;
 
 typedef void fu_frame_axes_kernel(const fu_real *a, const fu_real *b, fu_real *A, fu_real *T);
 /* frame of two vectors, and its turn by them: a [1]; b [1] -> A [1]; T [rad] */
@@ -2526,6 +2550,9 @@ typedef struct {
     fu_drag_wet_sphere_kernel *wet_sphere;
     fu_drag_wet_section_kernel *wet_section;
     fu_drag_wet_column_kernel *wet_column;
+    fu_drag_wave_elevation_kernel *wave_elevation;
+    fu_drag_wave_stretching_kernel *wave_stretching;
+    fu_drag_wave_velocity_kernel *wave_velocity;
 } fu_drag_kernels;
 
 /* What the engine needs of a frame. */

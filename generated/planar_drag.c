@@ -88,7 +88,7 @@
         d_th1_CM2_y = A[0]*C[2] + A[1]*C[3], \
         d_th1_M1_y = A[0]*d_th1_CM1_y + A[1]*d_th1_CM2_y - A[2]*CM1_y - A[3]*CM2_y;
 
-/* motion past the fluid: of planar_drag_inertia_of_cable and 7 more */
+/* motion past the fluid: of planar_drag_inertia_of_cable and 5 more */
 #define PLANAR_DRAG_MOTION_PAST_THE_FLUID \
     const fu_real \
         w_x = -U[0] + v[0], \
@@ -126,7 +126,7 @@
     const fu_real \
         P_wet_x = P_x*wet[0], \
         P_wet_y = P_y*wet[0], \
-        c_rate = c_place_x*v[0] + c_place_y*v[1], \
+        c_rate = c_place_x*v[0] + c_place_y*v[1] + wet[3], \
         P_wet_rate_x = P_rate_x*wet[0] + P_x*c_rate, \
         P_wet_rate_y = P_rate_y*wet[0] + P_y*c_rate, \
         strained_x = G[0]*P_wet_x + G[2]*P_wet_y, \
@@ -346,7 +346,7 @@ FU_KERNEL void planar_drag_impulse_of_cable(const fu_real *t, const fu_real *w, 
     M[3] = m[0] - scale*t[1]*t[1];
 }
 
-/* force of the inertia of the fluid on a length of cable (Lighthill 1971; Lagrange's equations of T); 47 add, 76 mul, 1 div, 1 sqrt */
+/* force of the inertia of the fluid on a length of cable (Lighthill 1971; Lagrange's equations of T); 49 add, 77 mul, 1 div, 1 sqrt */
 FU_KERNEL void planar_drag_inertia_of_cable(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *g, fu_real *power)
 {
     PLANAR_DRAG_MOTION_PAST_THE_FLUID
@@ -363,10 +363,10 @@ FU_KERNEL void planar_drag_inertia_of_cable(const fu_real *t, const fu_real *t_r
     f[1] = F_y;
     g[0] = G_t_x;
     g[1] = G_t_y;
-    power[0] = -P_wet_rate_x*U[0] - P_wet_rate_y*U[1] + carried_x*v[0] + carried_y*v[1] - strained_x*v[0] - strained_y*v[1];
+    power[0] = -P_wet_rate_x*U[0] - P_wet_rate_y*U[1] - T*wet[3] + carried_x*v[0] + carried_y*v[1] - strained_x*v[0] - strained_y*v[1];
 }
 
-/* derivatives of the force of the inertia of the fluid on a cable (derivatives of Lighthill 1971; Lagrange's equations of T); 210 add, 450 mul, 1 div, 1 sqrt */
+/* derivatives of the force of the inertia of the fluid on a cable (derivatives of Lighthill 1971; Lagrange's equations of T); 211 add, 450 mul, 1 div, 1 sqrt */
 FU_KERNEL void planar_drag_inertia_of_cable_tangent(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_t, fu_real *f_t_rate, fu_real *f_r, fu_real *f_v, fu_real *g_t, fu_real *g_r, fu_real *g_v)
 {
     PLANAR_DRAG_MOTION_PAST_THE_FLUID
@@ -376,7 +376,7 @@ FU_KERNEL void planar_drag_inertia_of_cable_tangent(const fu_real *t, const fu_r
     const fu_real pull = inv_len_t*less*w_t*wet[0];
     /* force on the particle */
     const fu_real
-        c_rate = c_place_x*v[0] + c_place_y*v[1],
+        c_rate = c_place_x*v[0] + c_place_y*v[1] + wet[3],
         displaced_wet = displaced*wet[0],
         T = 0.5*P_x*w_x + 0.5*P_y*w_y;
     /* derivatives */
@@ -534,7 +534,7 @@ void planar_drag_inertia_step(const fu_real *t, const fu_real *t_next, const fu_
 #endif
 
 #ifndef FU_BLOCK
-/* kinetic energy of the fluid along a rope, and its derivatives (Lighthill 1971; Lagrange's equations of T); 47 add, 79 mul, 1 div, 1 sqrt */
+/* kinetic energy of the fluid along a rope, and its derivatives (Lighthill 1971; Lagrange's equations of T); 49 add, 80 mul, 1 div, 1 sqrt */
 void planar_drag_inertia_of_span(fu_real growth, const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *y, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *T_r, fu_real *T_t, fu_real *T_v, fu_real *rate, fu_real *energy, fu_real *power)
 {
     PLANAR_DRAG_MOTION_PAST_THE_FLUID_2
@@ -549,7 +549,7 @@ void planar_drag_inertia_of_span(fu_real growth, const fu_real *t, const fu_real
     const fu_real
         P_wet_x = P_x*wet[0],
         P_wet_y = P_y*wet[0],
-        c_rate = c_place_x*y[0] + c_place_y*y[1],
+        c_rate = c_place_x*y[0] + c_place_y*y[1] + wet[3],
         P_wet_rate_x = P_rate_x*wet[0] + P_wet_x*growth + P_x*c_rate,
         P_wet_rate_y = P_rate_y*wet[0] + P_wet_y*growth + P_y*c_rate,
         strained_x = G[0]*P_wet_x + G[2]*P_wet_y,
@@ -572,12 +572,12 @@ void planar_drag_inertia_of_span(fu_real growth, const fu_real *t, const fu_real
     rate[0] = x_x;
     rate[1] = x_y;
     energy[0] = T*wet[0];
-    power[0] = -P_wet_rate_x*U[0] - P_wet_rate_y*U[1] + carried_x*v[0] + carried_y*v[1] - strained_x*y[0] - strained_y*y[1];
+    power[0] = -P_wet_rate_x*U[0] - P_wet_rate_y*U[1] - T*wet[3] + carried_x*v[0] + carried_y*v[1] - strained_x*y[0] - strained_y*y[1];
 }
 #endif
 
 #ifndef FU_BLOCK
-/* second derivatives of the kinetic energy of the fluid along a rope, and derivatives of the rate of the impulse (derivatives of Lighthill 1971; Lagrange's equations of T); 244 add, 588 mul, 1 div, 1 sqrt */
+/* second derivatives of the kinetic energy of the fluid along a rope, and derivatives of the rate of the impulse (derivatives of Lighthill 1971; Lagrange's equations of T); 245 add, 588 mul, 1 div, 1 sqrt */
 void planar_drag_inertia_of_span_tangent(fu_real growth, const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *y, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *second, fu_real *rate_by)
 {
     PLANAR_DRAG_MOTION_PAST_THE_FLUID_2
@@ -587,7 +587,7 @@ void planar_drag_inertia_of_span_tangent(fu_real growth, const fu_real *t, const
     const fu_real pull = inv_len_t*less*w_t*wet[0];
     /* force on the particle */
     const fu_real
-        c_rate = c_place_x*y[0] + c_place_y*y[1],
+        c_rate = c_place_x*y[0] + c_place_y*y[1] + wet[3],
         displaced_wet = displaced*wet[0],
         T = 0.5*P_x*w_x + 0.5*P_y*w_y;
     /* derivatives */
@@ -827,7 +827,7 @@ void planar_drag_impulse_of_point(const fu_real *A, const fu_real *C, const fu_r
 #endif
 
 #ifndef FU_BLOCK
-/* force and moment of the inertia of the fluid on a body (Lamb, Hydrodynamics, art. 124; Taylor 1928); 46 add, 68 mul */
+/* force and moment of the inertia of the fluid on a body (Lamb, Hydrodynamics, art. 124; Taylor 1928); 48 add, 69 mul */
 void planar_drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *moment, fu_real *power)
 {
     /* added mass */
@@ -855,12 +855,12 @@ void planar_drag_inertia_of_point(const fu_real *A, const fu_real *C, const fu_r
     f[0] = F_x;
     f[1] = F_y;
     moment[0] = moment0;
-    power[0] = -P_wet_rate_x*U[0] - P_wet_rate_y*U[1] + carried_x*v[0] + carried_y*v[1] - strained_x*v[0] - strained_y*v[1];
+    power[0] = -P_wet_rate_x*U[0] - P_wet_rate_y*U[1] - T*wet[3] + carried_x*v[0] + carried_y*v[1] - strained_x*v[0] - strained_y*v[1];
 }
 #endif
 
 #ifndef FU_BLOCK
-/* derivatives of force and moment of the inertia of the fluid (derivatives of Lamb, Hydrodynamics, art. 124; Taylor 1928); 143 add, 227 mul */
+/* derivatives of force and moment of the inertia of the fluid (derivatives of Lamb, Hydrodynamics, art. 124; Taylor 1928); 144 add, 227 mul */
 void planar_drag_inertia_of_point_tangent(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_by, fu_real *moment_by)
 {
     /* added mass */
@@ -884,7 +884,7 @@ void planar_drag_inertia_of_point_tangent(const fu_real *A, const fu_real *C, co
         P_rate_y = M2_x*rest_x + M2_y*rest_y + P_x*omega[0];
     /* force on the particle */
     const fu_real
-        c_rate = c_place_x*v[0] + c_place_y*v[1],
+        c_rate = c_place_x*v[0] + c_place_y*v[1] + wet[3],
         displaced_wet = displaced*wet[0],
         T = 0.5*P_x*w_x + 0.5*P_y*w_y;
     /* derivatives */
@@ -1035,7 +1035,7 @@ void planar_drag_inertia_of_point_step(const fu_real *A, const fu_real *A_next, 
 }
 #endif
 
-/* force of the inertia of the fluid on a length of cable by Morison's equation; 45 add, 71 mul, 1 div, 1 sqrt */
+/* force of the inertia of the fluid on a length of cable by Morison's equation; 44 add, 67 mul, 1 div, 1 sqrt */
 FU_KERNEL void planar_drag_morison_of_cable(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *g, fu_real *power)
 {
     PLANAR_DRAG_MOTION_PAST_THE_FLUID
@@ -1043,12 +1043,12 @@ FU_KERNEL void planar_drag_morison_of_cable(const fu_real *t, const fu_real *t_r
     PLANAR_DRAG_IMPULSE_AND_ITS_RATE
     /* force on the particle */
     const fu_real
-        past_rate_x = G[0]*w_x + G[1]*w_y + w_rate_x,
-        past_rate_y = G[2]*w_x + G[3]*w_y + w_rate_y,
+        past_rate_x = a[0] - material_x,
+        past_rate_y = a[1] - material_y,
         less_x_t = less*(i_x*past_rate_x + i_y*past_rate_y),
         F_x = wet[0]*(-displaced*material_x - i_x*less_x_t + m[0]*past_rate_x),
         F_y = wet[0]*(-displaced*material_y - i_y*less_x_t + m[0]*past_rate_y),
-        c_rate = c_place_x*v[0] + c_place_y*v[1];
+        c_rate = c_place_x*v[0] + c_place_y*v[1] + wet[3];
     /* outputs */
     f[0] = F_x;
     f[1] = F_y;
@@ -1057,11 +1057,17 @@ FU_KERNEL void planar_drag_morison_of_cable(const fu_real *t, const fu_real *t_r
     power[0] = -F_x*v[0] - F_y*v[1] + 0.5*c_rate*(P_x*w_x + P_y*w_y) + 0.5*wet[0]*(P_rate_x*w_x + P_rate_y*w_y + P_x*w_rate_x + P_y*w_rate_y);
 }
 
-/* derivatives of the force of the inertia of the fluid on a cable by Morison's equation (derivatives of Morison et al. 1950; Hall & Goupee 2015); 63 add, 127 mul, 1 div, 1 sqrt */
+/* derivatives of the force of the inertia of the fluid on a cable by Morison's equation (derivatives of Morison et al. 1950; Hall & Goupee 2015); 41 add, 95 mul, 1 div, 1 sqrt */
 FU_KERNEL void planar_drag_morison_of_cable_tangent(const fu_real *t, const fu_real *t_rate, const fu_real *m, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_t, fu_real *f_t_rate, fu_real *f_r, fu_real *f_v, fu_real *g_t, fu_real *g_r, fu_real *g_v)
 {
     (void)t_rate;
-    PLANAR_DRAG_MOTION_PAST_THE_FLUID
+    (void)v;
+    /* motion past the fluid */
+    const fu_real
+        material_x = G[0]*U[0] + G[1]*U[1] + U_rate[0],
+        material_y = G[2]*U[0] + G[3]*U[1] + U_rate[1],
+        c_place_x = up[0]*wet[1],
+        c_place_y = up[1]*wet[1];
     /* tangent and its rate */
     const fu_real
         less = m[0] - m[1],
@@ -1071,8 +1077,8 @@ FU_KERNEL void planar_drag_morison_of_cable_tangent(const fu_real *t, const fu_r
         i_y = inv_len_t*t[1];
     /* force on the particle */
     const fu_real
-        past_rate_x = G[0]*w_x + G[1]*w_y + w_rate_x,
-        past_rate_y = G[2]*w_x + G[3]*w_y + w_rate_y,
+        past_rate_x = a[0] - material_x,
+        past_rate_y = a[1] - material_y,
         less_x_t = less*(i_x*past_rate_x + i_y*past_rate_y);
     /* derivatives */
     const fu_real
@@ -1090,20 +1096,12 @@ FU_KERNEL void planar_drag_morison_of_cable_tangent(const fu_real *t, const fu_r
         d_t1_less_x_t = d_t1_i_x*less*past_rate_x + d_t1_i_y*less*past_rate_y,
         d_t1_F_x = -d_t1_i_x*less_x_t*wet[0] - d_t1_less_x_t*i_x*wet[0],
         d_t1_F_y = -d_t1_i_y*less_x_t*wet[0] - d_t1_less_x_t*i_y*wet[0],
-        d_w_x_less_x_t = G[0]*i_x*less + G[2]*i_y*less,
-        d_w_x_F_x = G[0]*m[0]*wet[0] - d_w_x_less_x_t*i_x*wet[0],
-        d_w_x_F_y = G[2]*m[0]*wet[0] - d_w_x_less_x_t*i_y*wet[0],
-        d_w_y_less_x_t = G[1]*i_x*less + G[3]*i_y*less,
-        d_w_y_F_x = G[1]*m[0]*wet[0] - d_w_y_less_x_t*i_x*wet[0],
-        d_w_y_F_y = G[3]*m[0]*wet[0] - d_w_y_less_x_t*i_y*wet[0],
-        d_w_rate_x_less_x_t = i_x*less,
-        d_w_rate_x_F_x = -d_w_rate_x_less_x_t*i_x*wet[0] + m[0]*wet[0],
-        d_w_rate_x_F_y = -(d_w_rate_x_less_x_t*i_y*wet[0]),
-        d_w_rate_y_less_x_t = i_y*less,
-        d_w_rate_y_F_x = -(d_w_rate_y_less_x_t*i_x*wet[0]),
-        d_w_rate_y_F_y = -d_w_rate_y_less_x_t*i_y*wet[0] + m[0]*wet[0],
-        d_material_x_F_x = -(displaced*wet[0]),
-        d_material_y_F_y = -(displaced*wet[0]),
+        d_material_x_less_x_t = -(i_x*less),
+        d_material_x_F_x = -d_material_x_less_x_t*i_x*wet[0] - displaced*wet[0] - m[0]*wet[0],
+        d_material_x_F_y = -(d_material_x_less_x_t*i_y*wet[0]),
+        d_material_y_less_x_t = -(i_y*less),
+        d_material_y_F_x = -(d_material_y_less_x_t*i_x*wet[0]),
+        d_material_y_F_y = -d_material_y_less_x_t*i_y*wet[0] - displaced*wet[0] - m[0]*wet[0],
         d_wet0_F_x = -displaced*material_x - i_x*less_x_t + m[0]*past_rate_x,
         d_wet0_F_y = -displaced*material_y - i_y*less_x_t + m[0]*past_rate_y;
     /* outputs */
@@ -1113,14 +1111,12 @@ FU_KERNEL void planar_drag_morison_of_cable_tangent(const fu_real *t, const fu_r
     f_t[3] = d_t1_F_y;
     FU_EACH(g, 4,
         f_t_rate[g] = FU_NUMBER(0.0);)
-    f_r[0] = G[0]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[2]*(G[1]*d_material_x_F_x - d_w_y_F_x) + c_place_x*d_wet0_F_x;
-    f_r[1] = G[1]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[3]*(G[1]*d_material_x_F_x - d_w_y_F_x) + c_place_y*d_wet0_F_x;
-    f_r[2] = G[0]*(G[2]*d_material_y_F_y - d_w_x_F_y) + G[2]*(G[3]*d_material_y_F_y - d_w_y_F_y) + c_place_x*d_wet0_F_y;
-    f_r[3] = G[1]*(G[2]*d_material_y_F_y - d_w_x_F_y) + G[3]*(G[3]*d_material_y_F_y - d_w_y_F_y) + c_place_y*d_wet0_F_y;
-    f_v[0] = -G[0]*d_w_rate_x_F_x - G[2]*d_w_rate_y_F_x + d_w_x_F_x;
-    f_v[1] = -G[1]*d_w_rate_x_F_x - G[3]*d_w_rate_y_F_x + d_w_y_F_x;
-    f_v[2] = -G[0]*d_w_rate_x_F_y - G[2]*d_w_rate_y_F_y + d_w_x_F_y;
-    f_v[3] = -G[1]*d_w_rate_x_F_y - G[3]*d_w_rate_y_F_y + d_w_y_F_y;
+    f_r[0] = G[0]*(G[0]*d_material_x_F_x + G[2]*d_material_y_F_x) + G[2]*(G[1]*d_material_x_F_x + G[3]*d_material_y_F_x) + c_place_x*d_wet0_F_x;
+    f_r[1] = G[1]*(G[0]*d_material_x_F_x + G[2]*d_material_y_F_x) + G[3]*(G[1]*d_material_x_F_x + G[3]*d_material_y_F_x) + c_place_y*d_wet0_F_x;
+    f_r[2] = G[0]*(G[0]*d_material_x_F_y + G[2]*d_material_y_F_y) + G[2]*(G[1]*d_material_x_F_y + G[3]*d_material_y_F_y) + c_place_x*d_wet0_F_y;
+    f_r[3] = G[1]*(G[0]*d_material_x_F_y + G[2]*d_material_y_F_y) + G[3]*(G[1]*d_material_x_F_y + G[3]*d_material_y_F_y) + c_place_y*d_wet0_F_y;
+    FU_EACH(g, 4,
+        f_v[g] = FU_NUMBER(0.0);)
     FU_EACH(g, 4,
         g_t[g] = FU_NUMBER(0.0);)
     FU_EACH(g, 4,
@@ -1130,7 +1126,7 @@ FU_KERNEL void planar_drag_morison_of_cable_tangent(const fu_real *t, const fu_r
 }
 
 #ifndef FU_BLOCK
-/* force and moment of the inertia of the fluid on a body by Morison's equation; 44 add, 64 mul */
+/* force and moment of the inertia of the fluid on a body by Morison's equation; 43 add, 60 mul */
 void planar_drag_morison_of_point(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f, fu_real *moment, fu_real *power)
 {
     /* added mass */
@@ -1154,11 +1150,11 @@ void planar_drag_morison_of_point(const fu_real *A, const fu_real *C, const fu_r
         P_rate_y = M2_x*rest_x + M2_y*rest_y + P_x*omega[0];
     /* force on the particle */
     const fu_real
-        past_rate_x = G[0]*w_x + G[1]*w_y + w_rate_x,
-        past_rate_y = G[2]*w_x + G[3]*w_y + w_rate_y,
+        past_rate_x = a[0] - material_x,
+        past_rate_y = a[1] - material_y,
         F_x = wet[0]*(M1_x*past_rate_x + M1_y*past_rate_y - displaced*material_x),
         F_y = wet[0]*(M2_x*past_rate_x + M2_y*past_rate_y - displaced*material_y),
-        c_rate = c_place_x*v[0] + c_place_y*v[1];
+        c_rate = c_place_x*v[0] + c_place_y*v[1] + wet[3];
     /* outputs */
     f[0] = F_x;
     f[1] = F_y;
@@ -1168,10 +1164,11 @@ void planar_drag_morison_of_point(const fu_real *A, const fu_real *C, const fu_r
 #endif
 
 #ifndef FU_BLOCK
-/* derivatives of force and moment of the inertia of the fluid by Morison's equation (derivatives of Morison et al. 1950; Hall & Goupee 2015); 74 add, 118 mul */
+/* derivatives of force and moment of the inertia of the fluid by Morison's equation (derivatives of Morison et al. 1950; Hall & Goupee 2015); 54 add, 94 mul */
 void planar_drag_morison_of_point_tangent(const fu_real *A, const fu_real *C, const fu_real *omega, fu_real displaced, const fu_real *v, const fu_real *a, const fu_real *U, const fu_real *U_rate, const fu_real *G, const fu_real *wet, const fu_real *up, fu_real *f_by, fu_real *moment_by)
 {
     (void)omega;
+    (void)v;
     /* added mass */
     const fu_real
         CM1_x = A[0]*C[0] + A[1]*C[1],
@@ -1182,11 +1179,16 @@ void planar_drag_morison_of_point_tangent(const fu_real *A, const fu_real *C, co
         M1_y = A[0]*CM1_y + A[1]*CM2_y,
         M2_x = A[2]*CM1_x + A[3]*CM2_x,
         M2_y = A[2]*CM1_y + A[3]*CM2_y;
-    PLANAR_DRAG_MOTION_PAST_THE_FLUID
+    /* motion past the fluid */
+    const fu_real
+        material_x = G[0]*U[0] + G[1]*U[1] + U_rate[0],
+        material_y = G[2]*U[0] + G[3]*U[1] + U_rate[1],
+        c_place_x = up[0]*wet[1],
+        c_place_y = up[1]*wet[1];
     /* force on the particle */
     const fu_real
-        past_rate_x = G[0]*w_x + G[1]*w_y + w_rate_x,
-        past_rate_y = G[2]*w_x + G[3]*w_y + w_rate_y;
+        past_rate_x = a[0] - material_x,
+        past_rate_y = a[1] - material_y;
     /* derivatives */
     PLANAR_DRAG_PART_OF_DERIVATIVES_6
     const fu_real
@@ -1194,29 +1196,23 @@ void planar_drag_morison_of_point_tangent(const fu_real *A, const fu_real *C, co
         d_th1_M2_x = A[0]*CM1_x + A[1]*CM2_x + A[2]*d_th1_CM1_x + A[3]*d_th1_CM2_x,
         d_th1_M2_y = A[0]*CM1_y + A[1]*CM2_y + A[2]*d_th1_CM1_y + A[3]*d_th1_CM2_y,
         d_th1_F_y = d_th1_M2_x*past_rate_x*wet[0] + d_th1_M2_y*past_rate_y*wet[0],
-        d_w_x_F_x = G[0]*M1_x*wet[0] + G[2]*M1_y*wet[0],
-        d_w_x_F_y = G[0]*M2_x*wet[0] + G[2]*M2_y*wet[0],
-        d_w_y_F_x = G[1]*M1_x*wet[0] + G[3]*M1_y*wet[0],
-        d_w_y_F_y = G[1]*M2_x*wet[0] + G[3]*M2_y*wet[0],
-        d_w_rate_x_F_x = M1_x*wet[0],
-        d_w_rate_x_F_y = M2_x*wet[0],
-        d_w_rate_y_F_x = M1_y*wet[0],
-        d_w_rate_y_F_y = M2_y*wet[0],
-        d_material_x_F_x = -(displaced*wet[0]),
-        d_material_y_F_y = -(displaced*wet[0]),
+        d_material_x_F_x = -M1_x*wet[0] - displaced*wet[0],
+        d_material_x_F_y = -(M2_x*wet[0]),
+        d_material_y_F_x = -(M1_y*wet[0]),
+        d_material_y_F_y = -M2_y*wet[0] - displaced*wet[0],
         d_wet0_F_x = M1_x*past_rate_x + M1_y*past_rate_y - displaced*material_x,
         d_wet0_F_y = M2_x*past_rate_x + M2_y*past_rate_y - displaced*material_y;
     /* outputs */
-    f_by[0] = G[0]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[2]*(G[1]*d_material_x_F_x - d_w_y_F_x) + c_place_x*d_wet0_F_x;
-    f_by[1] = G[1]*(G[0]*d_material_x_F_x - d_w_x_F_x) + G[3]*(G[1]*d_material_x_F_x - d_w_y_F_x) + c_place_y*d_wet0_F_x;
-    f_by[2] = -G[0]*d_w_rate_x_F_x - G[2]*d_w_rate_y_F_x + d_w_x_F_x;
-    f_by[3] = -G[1]*d_w_rate_x_F_x - G[3]*d_w_rate_y_F_x + d_w_y_F_x;
+    f_by[0] = G[0]*(G[0]*d_material_x_F_x + G[2]*d_material_y_F_x) + G[2]*(G[1]*d_material_x_F_x + G[3]*d_material_y_F_x) + c_place_x*d_wet0_F_x;
+    f_by[1] = G[1]*(G[0]*d_material_x_F_x + G[2]*d_material_y_F_x) + G[3]*(G[1]*d_material_x_F_x + G[3]*d_material_y_F_x) + c_place_y*d_wet0_F_x;
+    f_by[2] = 0.0;
+    f_by[3] = 0.0;
     f_by[4] = d_th1_F_x;
     f_by[5] = 0.0;
-    f_by[6] = G[0]*(G[2]*d_material_y_F_y - d_w_x_F_y) + G[2]*(G[3]*d_material_y_F_y - d_w_y_F_y) + c_place_x*d_wet0_F_y;
-    f_by[7] = G[1]*(G[2]*d_material_y_F_y - d_w_x_F_y) + G[3]*(G[3]*d_material_y_F_y - d_w_y_F_y) + c_place_y*d_wet0_F_y;
-    f_by[8] = -G[0]*d_w_rate_x_F_y - G[2]*d_w_rate_y_F_y + d_w_x_F_y;
-    f_by[9] = -G[1]*d_w_rate_x_F_y - G[3]*d_w_rate_y_F_y + d_w_y_F_y;
+    f_by[6] = G[0]*(G[0]*d_material_x_F_y + G[2]*d_material_y_F_y) + G[2]*(G[1]*d_material_x_F_y + G[3]*d_material_y_F_y) + c_place_x*d_wet0_F_y;
+    f_by[7] = G[1]*(G[0]*d_material_x_F_y + G[2]*d_material_y_F_y) + G[3]*(G[1]*d_material_x_F_y + G[3]*d_material_y_F_y) + c_place_y*d_wet0_F_y;
+    f_by[8] = 0.0;
+    f_by[9] = 0.0;
     f_by[10] = d_th1_F_y;
     f_by[11] = 0.0;
     FU_EACH(g, 6,
@@ -1263,5 +1259,80 @@ void planar_drag_wet_column(const fu_real *u, const fu_real *delta, fu_real *e, 
     c[0] = 0.125*(delta[0] + u[0] + 1.0)*(delta[0] + u[0] + 1.0)/delta[0];
     c_u[0] = 0.25*(delta[0] + u[0] + 1.0)/delta[0];
     c_uu[0] = 0.25/delta[0];
+}
+#endif
+
+#ifndef FU_BLOCK
+/* elevation of the surface by a wave (Airy 1845; Dean & Dalrymple 1991); 3 add, 9 mul, 1 cos, 1 sin */
+void planar_drag_wave_elevation(const fu_real *place, fu_real time, const fu_real *k, const fu_real *wave, fu_real *eta, fu_real *eta_t, fu_real *eta_r)
+{
+    /* phase */
+    const fu_real
+        theta = k[0]*place[0] + k[1]*place[1] - time*wave[1] + wave[2],
+        cosine = FU_COS(theta),
+        sine = FU_SIN(theta),
+        slope = sine*wave[0];
+    /* outputs */
+    eta[0] = cosine*wave[0];
+    eta_t[0] = sine*wave[0]*wave[1];
+    eta_r[0] = -(k[0]*slope);
+    eta_r[1] = -(k[1]*slope);
+}
+#endif
+
+#ifndef FU_BLOCK
+/* height of the velocity by Wheeler's rule (Wheeler 1970); 9 add, 11 mul, 4 div */
+void planar_drag_wave_stretching(fu_real height, fu_real eta, fu_real eta_t, const fu_real *eta_r, const fu_real *up, fu_real inv_depth, fu_real *Z, fu_real *Z_t, fu_real *Z_r)
+{
+    /* height */
+    const fu_real
+        stretched = (-eta + height)/((eta*inv_depth + 1.0)),
+        d_height_stretched = 1.0/(eta*inv_depth + 1.0),
+        d_eta_stretched = -inv_depth*(-eta + height)/((eta*inv_depth + 1.0)*(eta*inv_depth + 1.0)) - 1.0/(eta*inv_depth + 1.0);
+    /* outputs */
+    Z[0] = stretched;
+    Z_t[0] = d_eta_stretched*eta_t;
+    Z_r[0] = d_eta_stretched*eta_r[0] + d_height_stretched*up[0];
+    Z_r[1] = d_eta_stretched*eta_r[1] + d_height_stretched*up[1];
+}
+#endif
+
+#ifndef FU_BLOCK
+/* velocity of the fluid in a wave (Airy 1845; Dean & Dalrymple 1991); 18 add, 49 mul, 3 div, 1 cos, 1 sin, 1 exp */
+void planar_drag_wave_velocity(const fu_real *place, fu_real time, const fu_real *k, const fu_real *wave, const fu_real *up, fu_real Z, fu_real Z_t, const fu_real *Z_r, fu_real *potential, fu_real *U, fu_real *U_t, fu_real *G)
+{
+    /* phase */
+    const fu_real
+        theta = k[0]*place[0] + k[1]*place[1] - time*wave[1] + wave[2],
+        cosine = FU_COS(theta),
+        sine = FU_SIN(theta);
+    /* decay with depth */
+    const fu_real
+        grow = FU_EXP(Z*wave[3]),
+        scale = wave[0]*wave[1]/(-wave[4] + 1.0),
+        mirrored = wave[4]/grow,
+        inv_k = 1.0/wave[3],
+        ahead_x = inv_k*k[0],
+        ahead_y = inv_k*k[1],
+        C = scale*(grow + mirrored),
+        S = scale*(grow - mirrored);
+    /* velocity, by phase and height */
+    const fu_real
+        V_x = C*ahead_x*cosine + S*sine*up[0],
+        V_y = C*ahead_y*cosine + S*sine*up[1],
+        V_theta_x = -C*ahead_x*sine + S*cosine*up[0],
+        V_theta_y = -C*ahead_y*sine + S*cosine*up[1],
+        V_Z_x = wave[3]*(C*sine*up[0] + S*ahead_x*cosine),
+        V_Z_y = wave[3]*(C*sine*up[1] + S*ahead_y*cosine);
+    /* outputs */
+    potential[0] = C*inv_k*sine;
+    U[0] = V_x;
+    U[1] = V_y;
+    U_t[0] = V_Z_x*Z_t - V_theta_x*wave[1];
+    U_t[1] = V_Z_y*Z_t - V_theta_y*wave[1];
+    G[0] = V_Z_x*Z_r[0] + V_theta_x*k[0];
+    G[1] = V_Z_x*Z_r[1] + V_theta_x*k[1];
+    G[2] = V_Z_y*Z_r[0] + V_theta_y*k[0];
+    G[3] = V_Z_y*Z_r[1] + V_theta_y*k[1];
 }
 #endif

@@ -48,6 +48,8 @@ from .parts.surface_shapes import Plane as Plane
 from .parts.tapered import tapered as tapered
 from .parts.tension_table import TensionTable as TensionTable
 from .parts.velocity_table import VelocityTable as VelocityTable
+from .parts.wave import Wave as Wave
+from .parts.wave import jonswap as jonswap
 from .results.combination import combine as combine
 from .results.run import Run as Run
 from .scene.file import bundled_scenes as bundled_scenes

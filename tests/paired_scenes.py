@@ -367,6 +367,7 @@ FLUIDS: dict[str, Callable[[Site], object]] = {
     "polar": lambda on: _drag(on, {"velocity": (0, 0.3, 0)}, normal=0.0, polar=POLAR, chord=(0, -1, 0.1)),
     "current that changes": partial(_drag, fluid={"velocity": (0.3, 0, 0), "scale": SIGNALS["harmonic"]},
                                     added_mass=1.0),
+    "waves": partial(_drag, fluid={"surface": 0.5, "depth": 4.0, "waves": [fu.Wave(0.05, period=1.5)]}, added_mass=0.5),
     "table of velocities": partial(_drag, fluid={"table": fu.VelocityTable(
         interpolation="linear", time=[0, 0.5, 1.0], y=[-2, 0, 2], velocity=0.2 * np.ones((3, 3, 3)) * [1, 0, 0])}),
     **{f"profile by {form}": partial(_drag, fluid={"velocity": (0.3, 0, 0), "profile": profile})

@@ -28,6 +28,7 @@ from funicular.parts.section import Section
 from funicular.parts.signal import Signal
 from funicular.parts.solids import Solid
 from funicular.parts.velocity_table import VelocityTable
+from funicular.parts.wave import Wave
 
 FILE = Path(__file__).parents[1] / "runtime" / "parts" / "scene_methods.pyi"
 
@@ -55,7 +56,7 @@ class SceneMethods(SceneData):
 '''
 
 OTHERS = (Anchor, Block, Drum, Sheave, Stop, ForceTable, Friction, Material, Piece, SceneData, Section, Signal, Solid,
-          Polar, Profile, VelocityTable, Part)
+          Polar, Profile, VelocityTable, Part, Wave)
 """What signatures need beside the kinds of parts."""
 
 TYPES = {
@@ -69,6 +70,7 @@ TYPES = {
     "Displacement": "Sequence[Scale | str | None]", "Rotation": "tuple[Numbers, Scale]",
     "Listed": "Named | Sequence[Named]", "Route": "Sequence[Anchor | Block | Drum | Sheave | dict[str, Any]]",
     "Pieces": "Sequence[Piece | dict[str, Any]]",
+    "Waves": "Sequence[Wave | dict[str, Any]]",
     "ElementsOfSpans": "int | Sequence[int]", "LengthOfSpans": "float | Sequence[float]",
     "Name": "str", "Count": "int", "Flag": "bool", "Exponent": "float",
     "Material": "Material", "AnyFriction": "Friction | float",

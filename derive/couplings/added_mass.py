@@ -12,9 +12,10 @@ w = v - U, and w' = a - dU/dt - (grad U) v: with U of the fluid these are Lagran
 flow without curl are those of G. I. Taylor (Proc. R. Soc. A 120 (1928) 260-283).
 
 Of a partly wet section or body T is that of the wet part c: c T (wetness.py). Lagrange's equations then contain the
-rate of c in that of the impulse, and the derivative of T by the place. At a vertical entry in still water the slamming
-force is half of that of von Karman (NACA TN 321, 1929), c' m v^2/R, who has the first alone. In his model the other
-half is lost to the jet, which has no part in T: here energy is conserved, and a body that leaves the water regains it.
+rate of c, also that by waves at a fixed place, in that of the impulse, and the derivative of T by the place. At a
+vertical entry in still water the slamming force is half of that of von Karman (NACA TN 321, 1929), c' m v^2/R, who has
+the first alone. In his model the other half is lost to the jet, which has no part in T: here energy is conserved, and a
+body that leaves the water regains it.
 
 Morison's equation has the force c (M (a - DU/Dt) - m_d DU/Dt) alone, on the left side: across a cable
 C rho V a_n - (1 + C) rho V (DU/Dt)_n. It has neither a force on the slope nor a moment (`_morison`).
@@ -79,6 +80,7 @@ class Flow:
 
     v: np.ndarray
     y: np.ndarray
+    a: np.ndarray
     w: np.ndarray
     w_rate: np.ndarray
     material: np.ndarray
@@ -86,6 +88,7 @@ class Flow:
     G: np.ndarray
     part: sp.Expr
     part_by_place: np.ndarray
+    part_by_time: sp.Expr
     curvature: sp.Expr
     up: np.ndarray
 
@@ -101,20 +104,21 @@ def _input_flow(p: Program, dim: int, drifts: bool = False) -> Flow:
     U = p.input("U", dim, "m/s", "velocity of the fluid")
     U_rate = p.input("U_rate", dim, "m/s^2", "rate of U at a fixed place")
     G = p.input("G", (dim, dim), "1/s", "gradient of U: derivatives of a component in a row")
-    wet = p.input("wet", 3, "1, 1/m, 1/m^2", "wet part c, and its derivatives by the height")
-    up = p.input("up", dim, "1", "vertical")
+    wet = p.input("wet", 4, "1, 1/m, 1/m^2, 1/s",
+                  "wet part c, its derivatives by the height above the surface, and its rate at a fixed place")
+    up = p.input("up", dim, "1", "derivatives of that height by the place")
     p.stage("motion past the fluid")
     w = p.vector("w", v - U)
     w_rate = p.vector("w_rate", a - U_rate - G.dot(y))
     material = p.vector("material", U_rate + G.dot(U))
-    return Flow(v, y, w, w_rate, material, U, G, wet[0], p.vector("c_place", wet[1] * up), wet[2], up)
+    return Flow(v, y, a, w, w_rate, material, U, G, wet[0], p.vector("c_place", wet[1] * up), wet[3], wet[2], up)
 
 
 def _partial(p: Program, name: str, values: np.ndarray, flow: Flow, motion: np.ndarray | None = None
              ) -> tuple[np.ndarray, ...]:
     """Return the derivatives of values (n,) by w, by w', by the place, and by `motion`, v or y, where w is constant.
 
-    The gradient of U and the rate of U at a fixed place count as constants: second derivatives of U are neglected.
+    The gradient of U, the rates of U and of c at a fixed place, and the slope of the surface count as constants.
     """
     relative = [*flow.w, *flow.w_rate, *flow.material]
     by_w, by_w_rate, by_material = (
@@ -154,15 +158,15 @@ def _forces(p: Program, form: str, flow: Flow, impulse: np.ndarray, impulse_rate
 
 def _morison(p: Program, flow: Flow, impulse: np.ndarray, impulse_rate: np.ndarray, added: Added
              ) -> tuple[np.ndarray, sp.Expr]:
-    """Return the same of Morison's equation: M times the acceleration past that of the fluid, a - DU/Dt = w' + G w.
+    """Return the same of Morison's equation: M times the acceleration past that of the fluid, a - DU/Dt.
 
     It follows from no energy. With T as a kinetic energy the external power is its rate less the power on the particle.
     """
     displaced = p.symbols["displaced"].item()
     p.stage("force on the particle")
-    past = p.vector("past_rate", flow.w_rate + flow.G.dot(flow.w))
+    past = p.vector("past_rate", flow.a - flow.material)
     force = p.vector("F", flow.part * (added(past) - displaced * flow.material))
-    part_rate = p.define("c_rate", flow.part_by_place.dot(flow.v))
+    part_rate = p.define("c_rate", flow.part_by_place.dot(flow.v) + flow.part_by_time)
     rate = flow.part * (flow.w_rate.dot(impulse) + flow.w.dot(impulse_rate)) + part_rate * flow.w.dot(impulse)
     return force, rate / 2 - force.dot(flow.v)
 
@@ -179,7 +183,8 @@ class Parts:
 
     def power(self, flow: Flow) -> sp.Expr:
         """Return the external power of the fluid."""
-        return self.carried.dot(flow.v) - self.rate.dot(flow.U) - self.strained.dot(flow.y)
+        return (self.carried.dot(flow.v) - self.rate.dot(flow.U) - self.strained.dot(flow.y)
+                - self.energy * flow.part_by_time)
 
 
 def _parts(p: Program, flow: Flow, impulse: np.ndarray, impulse_rate: np.ndarray, growth: sp.Expr = sp.S.Zero) -> Parts:
@@ -187,7 +192,7 @@ def _parts(p: Program, flow: Flow, impulse: np.ndarray, impulse_rate: np.ndarray
     displaced = p.symbols["displaced"].item()
     p.stage("force on the particle")
     wet = p.vector("P_wet", flow.part * impulse)
-    part_rate = p.define("c_rate", flow.part_by_place.dot(flow.y))
+    part_rate = p.define("c_rate", flow.part_by_place.dot(flow.y) + flow.part_by_time)
     rate = p.vector("P_wet_rate", flow.part * impulse_rate + part_rate * impulse + growth * wet)
     strained = p.vector("strained", flow.G.T.dot(wet))
     carried = p.vector("carried", p.define("displaced_wet", flow.part * displaced) * flow.material)

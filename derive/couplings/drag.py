@@ -20,7 +20,7 @@ import sympy as sp
 from ..algebra.tangent_frame import cross
 from ..codegen.family import CouplingFamily
 from ..codegen.program import Program, jacobian
-from . import added_mass, section_flow, wetness
+from . import added_mass, section_flow, waves, wetness
 
 DRAGS = {3: "drag", 2: "planar_drag"}
 RELATIVE = "velocity of the fluid less that of the point"
@@ -37,7 +37,8 @@ def build(dim: int) -> list[Program]:
     """Return the kernels in space or in the plane."""
     lift = [lift_along_cable(), section_flow.on_section(DRAGS[dim], RELATIVE)] if dim == 3 else []
     return [along_cable(dim), force_along_cable(dim), *lift, on_point(dim), on_foil(dim),
-            *added_mass.build(DRAGS[dim], dim), *wetness.build(DRAGS[dim], dim)]
+            *added_mass.build(DRAGS[dim], dim), *wetness.build(DRAGS[dim], dim),
+            *waves.build(DRAGS[dim], dim)]
 
 
 def _size(p: Program, name: str, square: sp.Expr, least: sp.Expr) -> sp.Expr:

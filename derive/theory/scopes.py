@@ -388,7 +388,8 @@ def drag_scope(name: str) -> Scope:
                                     Symbol(r"\dot{\mathbf{t}}", "t_rate", column),
                                     *(Symbol(rf"\mathbf{{{letter}}}", letter, column) for letter in "avU"),
                                     Symbol(r"\mathbf{U}_{1}", "U_rate", column), Symbol(r"\mathbf{G}", "G", matrix),
-                                    *(Symbol(s, "wet", entry(k)) for k, s in enumerate(("c", "c_{1}", "c_{2}"))),
+                                    *(Symbol(s, "wet", entry(k)) for k, s in enumerate(
+                                        ("c", "c_{1}", "c_{2}", "c_{0}"))),
                                     Symbol(r"\mathbf{z}", "up", column), Symbol("m_{d}", "displaced", number),
                                     *(Symbol(s, "m", entry(k)) for k, s in enumerate(("m_{n}", "m_{t}"))),
                                     Symbol(r"\mathbf{s}", "s", column), Symbol(r"\mathbf{A}", "A", matrix),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
@@ -72,9 +72,56 @@ def _check_in_table(drag: Drag, fluid: Fluid, table: VelocityTable, places: np.n
                          "take a larger table, or leave out what the velocity does not depend on")
 
 
+MAX_STEEPNESS = 1 / 7
+"""Height over length of the steepest wave; times tanh(k depth) in water of a depth (Miche 1944)."""
+MAX_URSELL = 26.0
+"""Height length²/depth³ up to which linear waves are long enough (Hedges 1995: 40 between Stokes' and cnoidal)."""
+
+
+def _check_waves(scene: SceneData, fluid: Fluid) -> None:
+    """Raise SceneError for waves that the linear theory does not have, in the gravity of a scene."""
+    if not any(scene.gravity):
+        raise SceneError(fluid.where, "has waves, in a scene without gravity", "give the scene gravity")
+    for wave, k in zip(fluid.waves or (), fluid.wave_numbers(float(np.linalg.norm(scene.gravity))), strict=True):
+        length, height = 2 * np.pi / k, 2 * wave.amplitude
+        who = (f"the wave of {show(wave.period, 's')} has the height {show(height, 'm')} and the length "
+               f"{show(length, 'm')}")
+        ahead = np.array(wave.direction) / np.linalg.norm(wave.direction)
+        if abs(ahead @ scene.up) > 1e-9:
+            raise SceneError(fluid.where, f"a wave runs along {show(wave.direction)}, which is not level",
+                             "give a direction square to gravity")
+        limit = MAX_STEEPNESS * (1.0 if fluid.depth is None else float(np.tanh(k * fluid.depth)))
+        if height > limit * length:
+            raise SceneError(fluid.where, f"{who}: it breaks, at {limit:.3g} of the length", "take a smaller amplitude")
+        if fluid.depth is not None and height * length**2 > MAX_URSELL * fluid.depth**3:
+            number = height * length**2 / fluid.depth**3
+            raise SceneError(fluid.where, f"{who}, too long for the linear theory in a depth of "
+                             f"{show(fluid.depth, 'm')}: its Ursell number is {number:.3g}, over {MAX_URSELL:.0f}",
+                             "take a smaller amplitude, or a table of velocities")
+    if drag := next((each for each in scene.drags.values() if each.on in scene.ropes), None):
+        raise SceneError(fluid.where, *_beside_rope(drag))
+
+
+def _beside_rope(drag: Drag) -> tuple[str, str]:
+    """Return cause and remedy for waves beside a drag on a rope, whose material flows past its points."""
+    return (f'has waves, and the {drag.where} is on rope "{drag.on}", whose equations have a surface at rest',
+            "take a cable, or leave waves out")
+
+
+def _check_alone_with_waves(fluid: Fluid, fluids: Iterable[Fluid]) -> None:
+    """Raise SceneError for waves beside another surface."""
+    for other in (each for each in fluids if each.surface is not None and each.name != fluid.name):
+        if fluid.surface is not None and (fluid.waves or other.waves):
+            raise SceneError(fluid.where, f"has a surface beside that of the {other.where}, and one of them has waves",
+                             "leave waves out, or one of the surfaces")
+
+
 def placed_fluid(scene: SceneData, fluid: Fluid) -> Fluid:
     """Return the fluid, checked to share no surface with another one, and to suit the drags. Raises SceneError."""
     fluids = list(scene.fluids.values())
+    if fluid.waves is not None:
+        _check_waves(scene, fluid)
+    _check_alone_with_waves(fluid, fluids)
     if fluid.surface is None:
         if other := next((each for each in fluids if each.surface is None), None):
             for drag in (each for each in scene.drags.values() if each.fluid is None):
@@ -155,6 +202,8 @@ def _check_rope(scene: SceneData, drag: Drag, rope: Rope) -> None:
     _refuse(drag, "rope")
     _check_added_mass_of_line(drag, rope)
     _check_alone(scene, drag, rope)
+    if waving := next((fluid for fluid in scene.fluids.values() if fluid.waves is not None), None):
+        raise SceneError(waving.where, *_beside_rope(drag))
     if drag.lift != 0 and rope.dim == 2:
         raise SceneError(drag.where, f'lift of rope "{rope.name}" leaves the plane of its element {rope.element}',
                          'take element="cable12", or leave lift out')

@@ -9,9 +9,11 @@ extremes of tables are breakpoints, too: a smooth pulse is short beside the step
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 
+from ..parts.fluid import Fluid
 from .loads import LoadModel
 from .model import Model
 from .signals import SignalModel
@@ -20,6 +22,8 @@ HIGHER, ACCELERATION, RATE = range(3)
 """What jumps at a breakpoint: a higher derivative, the acceleration or the rate of a driven motion; as in
 engine/bodies/motions.h."""
 
+WAVE_PART = 0.25
+"""Of the shortest period: the longest step."""
 SIGNAL_ROUNDING = 1e-14
 """Rounding of the difference of two pieces, as a fraction of the largest value of the signal."""
 MIN_SIGNAL_RANGE = 1e-300
@@ -43,6 +47,7 @@ def breakpoints(model: Model, duration: float, tol: float, turns: bool = True, n
         found += _of_tables(model)
     found += _of_moving_loads(model, duration, nodes)
     if turns:
+        found += _of_waves(model, duration)
         found += [each for signal in model.signals for each in _turns(signal.breaks, signal.coefficients[:, 0], tol)
                   if each[0] < (1 - INSTANT_TOLERANCE) * duration]
     found = [each for each in found if INSTANT_TOLERANCE < each[0] / duration < 1 + INSTANT_TOLERANCE]
@@ -82,6 +87,17 @@ def _of_tables(model: Model) -> list[tuple[float, int]]:
     kinds = {id(drag.fluid): (drag.fluid.table, ACCELERATION if drag.has_inertia and drag.degree == 1 else HIGHER)
              for drag in model.drags if drag.fluid.table is not None}
     return [(float(time), kind) for table, kind in kinds.values() for time in table.grid.axes.get("time", ())]
+
+
+def _of_waves(model: Model, duration: float) -> list[tuple[float, int]]:
+    """Return times so near to each other that no step goes over a wave."""
+    step = longest_step_in_waves(drag.fluid for drag in model.drags if drag.entries["n_waves"])
+    return [(float(time), HIGHER) for time in step * np.arange(1, math.ceil(duration / step))]
+
+
+def longest_step_in_waves(fluids: Iterable[Fluid]) -> float:
+    """Return a quarter of the shortest period of the waves of fluids, s; infinite without waves."""
+    return WAVE_PART * min((wave.period for fluid in fluids for wave in fluid.waves or ()), default=math.inf)
 
 
 def _of_signal(signal: SignalModel, drives: bool, accelerates: bool, tol: float) -> list[tuple[float, int]]:

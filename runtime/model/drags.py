@@ -27,6 +27,8 @@ from .span_coordinates import AlongSpan, SpanCoordinates
 MIN_SPEED = 1e-30
 """Lower bound of speeds in the kernels, m/s: derivatives at rest would be 0/0 without it."""
 NONE = np.zeros(0)
+WAVE_NUMBERS = 5
+"""Of a wave: amplitude, frequency, phase, size of k, and exp(-2 k depth), 0 for infinite depth."""
 
 KERNELS = {2: "planar_drag", 3: "drag"}
 
@@ -111,7 +113,7 @@ def _in_fluid(part: Drag, fluid: Fluid, builder: ModelBuilder, stretch: UniformP
         degree=degree, origin=origin, axes=axes.ravel(), buoyancy=-displaced * np.array(scene.gravity)[:dim],
         wet=cut if fluid.surface is not None or bottom > -NO_SURFACE else "all", surface=fluid.top, bottom=bottom,
         fluid=fluid, polar=part.polar,
-        entries=table | _profile(fluid) | _foil(part, fluid, dim) | {
+        entries=table | _profile(fluid) | _waves(fluid, scene, up[:dim]) | _foil(part, fluid, dim) | {
             "extent": part.extent(section), "displaced": displaced, "added": (),
             "is_morison": part.added_mass_form == "morison",
             "is_foil": part.polar is not None or (line is None and part.lift != 0)})
@@ -187,6 +189,21 @@ def _profile(fluid: Fluid) -> dict[str, Any]:
     return {"profile": "uniform" if fluid.profile is None else fluid.profile.form, "reference": power.reference_height,
             "exponent": power.exponent, "least": power.least_height, "n_segments": len(coefficients), "breaks": breaks,
             "coefficients_of_profile": coefficients}
+
+
+def _waves(fluid: Fluid, scene: SceneData, up: np.ndarray) -> dict[str, Any]:
+    """Return the fields of the waves on a fluid's surface, or on that of the fluid below it, which move its lower end.
+    """
+    own = next((each for each in scene.fluids.values() if each.waves is not None and each.top <= fluid.top), fluid)
+    waves, gravity = own.waves or (), float(np.linalg.norm(scene.gravity))
+    k = own.wave_numbers(gravity)
+    vectors = np.array([wave.direction for wave in waves]).reshape(-1, 3)
+    vectors = k[:, None] * vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+    decay = np.zeros(len(k)) if own.depth is None else np.exp(-2 * k * own.depth)
+    numbers = [[wave.amplitude, wave.frequency, wave.phase, *each] for wave, *each in zip(waves, k, decay, strict=True)]
+    return {"n_waves": len(waves), "move_fluid": bool(waves) and own is fluid,
+            "wave_vectors": vectors[:, : len(up)], "wave_numbers": np.array(numbers).reshape(-1, WAVE_NUMBERS),
+            "inv_depth": 0.0 if own.depth is None else 1 / own.depth}
 
 
 def _table(fluid: Fluid, dim: int) -> tuple[int, dict[str, Any]]:

@@ -1,6 +1,6 @@
 """Fluids that act on cables and bodies: wind and water."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import Annotated
 
 import numpy as np
@@ -11,6 +11,7 @@ from .part import Part
 from .signal import ONE, AnySignal
 from .validation import Name, Vector, finite, positive, xyz
 from .velocity_table import VelocityTable
+from .wave import Waves
 
 NO_SURFACE = 1e300
 """m, above all heights."""
@@ -28,6 +29,11 @@ class Fluid(Part):
     scale: factor of the velocity over time, a signal
     profile: factor of the velocity by height, a `PowerProfile` or a `TableProfile`
     table: velocity in time and space, a `VelocityTable`, in the place of velocity and profile
+    waves: on the surface, linear `Wave` s or those of `jonswap`, with the current added. What is wet, buoyancy with it,
+        follows their elevation at the place; the acceleration of the fluid acts where a `Drag` has added_mass, also 0.
+        Statics and modes have none.
+        The velocity at the height z above the still level is that at (z - elevation)/(1 + elevation/depth) (Wheeler)
+    depth: of the water below the still level, m; None: infinite
     """
 
     kind = "fluid"
@@ -39,6 +45,20 @@ class Fluid(Part):
     scale: AnySignal = ONE
     profile: AnyProfile | None = None
     table: VelocityTable | None = None
+    waves: Waves | None = None
+    depth: Annotated[float, positive("m")] | None = None
+
+    @model_validator(mode="after")
+    def _has_waves_on_a_surface(self) -> "Fluid":
+        if self.waves is None:
+            if self.depth is not None:
+                raise ValueError("has a depth without waves", "give waves, or leave it out")
+            return self
+        for name, cause in (("table", "which is all of the velocity"), ("surface", "on which they run")):
+            if (getattr(self, name) is None) == (name == "surface"):
+                raise ValueError(f"has waves with{'out' * (name == 'surface')} a {name}, {cause}",
+                                 "give surface" if name == "surface" else "leave one of them out")
+        return self
 
     @model_validator(mode="after")
     def _has_one_velocity(self) -> "Fluid":
@@ -65,6 +85,28 @@ class Fluid(Part):
         """Return the places (..., 3) in the fluid vertically nearest to other places, in m."""
         height = places @ up
         return places + (np.clip(height, self.bottom(fluids), self.top) - height)[..., None] * up
+
+    def off_plane(self) -> Iterator[str]:
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
+        yield from super().off_plane()
+        for wave in self.waves or ():
+            yield from (f"waves {quantity}" for quantity in wave.off_plane())
+
+    def wave_numbers(self, gravity: float) -> np.ndarray:
+        """Return k of its waves, 1/m, in the gravity in m/s²."""
+        return np.array([wave.wave_number(gravity, self.depth) for wave in self.waves or ()])
+
+    def elevation(self, time: np.ndarray, place: np.ndarray, gravity: float = 9.81) -> np.ndarray:
+        """Return the elevation of its surface above the still level, m, at times (s) and places (..., 3) in m.
+
+        gravity: m/s².
+        """
+        found = np.zeros(np.broadcast_shapes(np.shape(time), np.shape(place)[:-1]))
+        for wave, k in zip(self.waves or (), self.wave_numbers(gravity), strict=True):
+            ahead = np.array(wave.direction) / np.linalg.norm(wave.direction)
+            theta = k * (place @ ahead) - wave.frequency * np.asarray(time) + wave.phase
+            found = found + wave.amplitude * np.cos(theta)
+        return found
 
     def velocity_at(self, time: np.ndarray, height: np.ndarray, place: np.ndarray | None = None) -> np.ndarray:
         """Return the velocity (..., 3) in m/s at times (s), heights (m) and, for a table, places (..., 3) in m."""

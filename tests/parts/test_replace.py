@@ -231,8 +231,8 @@ ONE_OF_TWO = {("rope", "closed"),
               ("drag", "area"), ("drag", "coefficient"), ("drag", "at"), ("drag", "volume"), ("drag", "height"),
               ("contact", "points"), ("contact", "restitution"), ("contact", "rest_velocity"),
               ("drag", "polar"), ("drag", "span"), ("drag", "chord"), ("drag", "added_mass_tangential"),
-              ("drag", "added_mass_form"),
-              ("fluid", "table"), ("surface", "inside")}
+              ("drag", "added_mass_form"), ("fluid", "table"), ("fluid", "waves"), ("fluid", "depth"),
+              ("surface", "inside")}
 """Fields of parts that are described otherwise, or of other kinds of joints."""
 
 

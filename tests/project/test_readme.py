@@ -119,6 +119,11 @@ def pages_and_pictures(space):
     assert Path("shape.png").stat().st_size > 10_000
 
 
+def buoy_in_waves(space):
+    height = space["run"]["buoy.position"][:, 1] - space["elevation"]
+    assert 0.5 < space["elevation"].max() - space["elevation"].min() < 3 and abs(height[20:]).max() < 0.4
+
+
 def many_scenes(space):
     run = space["scene"].replace("A", mass=space["masses"][-1]).run(duration=0.1, tol=1e-3)
     assert space["mass"] == space["masses"][-1]
@@ -173,6 +178,7 @@ AFTERWARDS = {("README.md", "First scene"): saved,
               (f"{SUBJECTS}cables.md", "Unequal elements"): unequal_elements,
               (f"{SUBJECTS}fluids.md", "A towed line"): towed_line,
               (f"{SUBJECTS}fluids.md", "A surface"): buoy,
+              (f"{SUBJECTS}fluids.md", "Waves"): buoy_in_waves,
               (f"{SUBJECTS}fluids.md", "A table of the flow"): swaying_line,
               (f"{SUBJECTS}contact.md", "A line on a bed"): moored_line,
               (f"{SUBJECTS}contact.md", "Hard contact"): bouncing_ball,

@@ -80,13 +80,18 @@ def _displaced(s: State, place: Any, t: Any) -> State:
     """Return the state at a place t times `place` away, where second derivatives of the flow are nil."""
     height = s["up"].dot(place)
     return {**s, "U": s["U"] + t * s["G"].dot(place),
-            "wet": s["wet"] + t * height * np.array([s["wet"][1], s["wet"][2], 0 * s["wet"][2]])}
+            "wet": s["wet"] + t * height * np.array([s["wet"][1], s["wet"][2], *2 * [0 * s["wet"][2]]])}
+
+
+def _wet_later(s: State, t: Any) -> Any:
+    """Return the wet part and its derivatives after the time t at a fixed place."""
+    return s["wet"] + t * np.array([s["wet"][3], *3 * [0 * s["wet"][3]]])
 
 
 def _later(kernel: str, s: State, t: Any) -> State:
     """Return the state at the time t: the point moves on, and the flow changes with its place and by its own rate."""
     moved = _displaced(s, s["v"], t)
-    moved |= {"U": moved["U"] + t * s["U_rate"], "v": s["v"] + t * s["a"]}
+    moved |= {"U": moved["U"] + t * s["U_rate"], "v": s["v"] + t * s["a"], "wet": _wet_later(moved, t)}
     return _swung(moved, s["omega"], t) if kernel.endswith("point") else {**moved, "t": s["t"] + t * s["t_rate"]}
 
 
@@ -108,7 +113,8 @@ def _forces(kernel: str, dim: int) -> list[Relation]:
     def power(k, s, t, j):
         force, strained = k(kernel, s)["f"], s["G"].T.dot(s["wet"][0] * _impulse(kernel, k, s))
         rate = force + _carried(s) - rest(k, s)
-        return _carried(s).dot(s["v"]) - rate.dot(s["U"]) - strained.dot(s["v"])
+        return (_carried(s).dot(s["v"]) - rate.dot(s["U"]) - strained.dot(s["v"])
+                - _energy(kernel, k, {**s, "wet": s["wet"] * 0 + 1}) * s["wet"][3])
 
     return [
         Relation(kernel, "f", "rate of c p, where T does not depend on the place", 1, impulse,
@@ -210,13 +216,15 @@ def _along_span(dim: int) -> list[Relation]:
 
     def impulse(k, s, t, j):
         later = _displaced(s, s["y"], t)
-        later |= {"U": later["U"] + t * s["U_rate"], "v": s["v"] + t * s["a"], "t": s["t"] + t * s["t_rate"]}
+        later |= {"U": later["U"] + t * s["U_rate"], "v": s["v"] + t * s["a"], "t": s["t"] + t * s["t_rate"],
+                  "wet": _wet_later(later, t)}
         return (1 + t * s["growth"]) * k(kernel, later)["T_v"]
 
     def power(k, s, t, j):
         found = k(kernel, s)
         rate = found["rate"] + _carried(s)
-        return _carried(s).dot(s["v"]) - rate.dot(s["U"]) - found["T_v"].dot(s["G"].dot(s["y"]))
+        return (_carried(s).dot(s["v"]) - rate.dot(s["U"]) - found["T_v"].dot(s["G"].dot(s["y"]))
+                - found["energy"][0] / s["wet"][0] * s["wet"][3])
 
     def gradient(k, s):
         return np.concatenate([k(kernel, s)[f"T_{key}"] for key in "rtv"])

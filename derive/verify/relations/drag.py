@@ -12,6 +12,7 @@ from ..motion import cross
 from .added_mass import added_mass
 from .paths import entry, from_kernel, unit
 from .section_flow import section_flow
+from .waves import waves
 from .wetness import wetness
 
 
@@ -73,4 +74,4 @@ def drag(family: CouplingFamily) -> list[Relation]:
                        from_kernel("along_cable", "f", **{name: entry(name)}), dim) for name in "tw"),
             Relation("on_point", "f", "derivative by w of c |w|^3/3", 1, of_point, dim),
             Relation("on_point", "f_w", "df by w", 1, from_kernel("on_point", "f", w=entry("w")), dim),
-            *added_mass(family), *wetness()]
+            *added_mass(family), *wetness(), *waves(dim)]

@@ -19,7 +19,11 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
     moving = {name: random.normal(size=dim) for name in vectors}
     axes, half = np.linalg.qr(random.normal(size=(dim, dim)))[0], random.normal(size=(dim, dim))
     sampled = moving | {"A": axes, "G": random.normal(size=(dim, dim)), "displaced": np.float64(1.7),
-                     "wet": np.array([0.6, -0.9, 0.7]),
+                     "wet": np.array([0.6, -0.9, 0.7, 0.5]),
+                     "place": random.normal(size=dim), "time": np.float64(0.3), "k": random.normal(size=dim),
+                     "wave": np.array([0.8, 1.3, 0.4, 0.9, 0.2]), "Z": np.float64(-0.6), "Z_t": np.float64(0.7),
+                     "Z_r": random.normal(size=dim), "height": np.float64(-0.7), "eta": np.float64(0.3),
+                     "eta_t": np.float64(0.4), "eta_r": random.normal(size=dim), "inv_depth": np.float64(0.2),
                      "omega": random.normal(size=3 if dim == 3 else 1), "C": half @ half.T, "m": np.array([1.3, 0.2]),
                      "u": np.array([-0.97]), "delta": np.array([0.05]), "phi": np.array([0.4]),
                      "s": _unit(random.normal(size=3)) if dim == 3 else -np.ones(1),

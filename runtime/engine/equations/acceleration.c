@@ -52,22 +52,22 @@ int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
 
 /* Computes all of M at a state with inertia of couplings, and factors its band; returns 0, or nonzero if it is not
  * positive definite. */
-static int whole(const fu_model *model, const double *q, fu_accelerator *work)
+static int whole(const fu_model *model, double t, const double *q, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
     fu_system_clear(s);
     fu_dynamic_matrix(model, q, model->zero, 1.0, 0.0, 0.0, s);
     for (int constant = 0; constant < 2; ++constant) fu_bodies_mass(model, q, constant, s);
-    fu_coupling_masses(model, q, 1.0, s);
+    fu_coupling_masses(model, t, q, 1.0, s);
     return fu_system_factor_band(s) || !s->definite;
 }
 
 /* Computes the border of M, and the band if it depends on the configuration; returns 0, or nonzero if that is not
  * definite. */
-static int border(const fu_model *model, const double *q, fu_accelerator *work)
+static int border(const fu_model *model, double t, const double *q, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
-    if (model->n_inertial) return whole(model, q, work);
+    if (model->n_inertial) return whole(model, t, q, work);
     fu_system_clear_border(s);
     memcpy(s->D, work->corner, sizeof(double) * (size_t)s->fronts->size);
     fu_bodies_mass(model, q, 0, s);
@@ -78,7 +78,7 @@ static int border(const fu_model *model, const double *q, fu_accelerator *work)
 static int factor_border(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
-    if (border(model, state->q, work)) return 1;
+    if (border(model, state->t, state->q, work)) return 1;
     for (int r = 0; r < model->n_rows; ++r) {
         const fu_rows *rows = &work->rows[r];
         for (int c = 0; c < rows->max_multipliers; ++c) {
@@ -178,7 +178,7 @@ int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *
     fu_system *s = &work->mass;
     const int all = model->n_multipliers;
     fu_evaluate_rows(model, state, work);
-    if (border(model, state->q, work)) return 1;
+    if (border(model, state->t, state->q, work)) return 1;
     for (int k = 0; k < all; ++k)
         fu_add(model, s, fu_extra(model, k), fu_extra(model, k), 1.0); /* M alone, without multipliers */
     const int info = fu_system_factor_border(s, model->lapack);
@@ -207,7 +207,7 @@ int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *
 static void reactions(const fu_model *model, const fu_state *state, fu_accelerator *work, const double *acceleration,
                       const double *lambda, double *reaction)
 {
-    fu_mass_times(model, state->q, acceleration, work->work);
+    fu_mass_times(model, state->t, state->q, acceleration, work->work);
     for (int i = 0; i < model->n_dof; ++i) reaction[i] = work->work[i] + work->force[i]; /* M q'' - Q (eq 26) */
     for (int r = 0; r < model->n_rows; ++r) {                                            /* + H' lambda (eq 32) */
         const fu_rows *rows = &work->rows[r];
@@ -240,7 +240,7 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
         prescribed[dof] = state->acceleration[dof];
         accelerated |= prescribed[dof] != 0.0;
     }
-    if (accelerated) fu_mass_times(model, state->q, prescribed, work->work);
+    if (accelerated) fu_mass_times(model, state->t, state->q, prescribed, work->work);
     for (int i = 0; i < model->n_dof; ++i) work->work[i] = -work->force[i] - work->work[i];
     if (solve_friction(model, state, work, acceleration)) return 1;
     solve_with_reactions(model, state, work, lambda);

@@ -3,10 +3,10 @@
 #include "equations/equations.h"
 
 /* Computes f = M a. */
-void fu_mass_times(const fu_model *model, const double *q, const double *a, double *f)
+void fu_mass_times(const fu_model *model, double t, const double *q, const double *a, double *f)
 {
     fu_constant_mass_times(model, q, a, f);
-    fu_coupling_inertia(model, q, a, f);
+    fu_coupling_inertia(model, t, q, a, f);
 }
 
 /* Returns the kinetic energy at the velocities v, J, with that of added mass. */
@@ -22,9 +22,9 @@ double fu_kinetic_energy_at(const fu_model *model, const fu_state *state)
 }
 
 /* Returns v' M v/2 of a change v of velocities, J. */
-double fu_kinetic_energy_of_change(const fu_model *model, const double *q, const double *v)
+double fu_kinetic_energy_of_change(const fu_model *model, double t, const double *q, const double *v)
 {
-    return fu_constant_kinetic_energy(model, q, v) + fu_coupling_kinetic_energy(model, 0.0, q, v, 0);
+    return fu_constant_kinetic_energy(model, q, v) + fu_coupling_kinetic_energy(model, t, q, v, 0);
 }
 
 /* Returns the power dissipated by damping and friction, W; work: see `dissipation` in coupling.h. */

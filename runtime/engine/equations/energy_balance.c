@@ -104,7 +104,7 @@ void fu_take_jump(fu_run *run, const double *change, double lost)
  * the kinetic energy of the change (Carnot), with the restitution e of the violated constraint. */
 void fu_impact(fu_run *run, const double *change, double restitution)
 {
-    const double of_change = fu_kinetic_energy_of_change(run->model, run->now.q, change);
+    const double of_change = fu_kinetic_energy_of_change(run->model, run->now.t, run->now.q, change);
     fu_take_jump(run, change, (1.0 - restitution) / (1.0 + restitution) * of_change);
 }
 

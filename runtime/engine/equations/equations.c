@@ -23,7 +23,7 @@ void fu_residual(fu_run *run, const fu_equations *at)
     const fu_state *next = at->next;
     if (at->weights.inertia != 0.0) {
         fu_constant_mass_times(model, next->q, next->acceleration, run->force);
-        fu_coupling_inertia_beside_residuals(model, next->q, next->acceleration, run->force);
+        fu_coupling_inertia_beside_residuals(model, next->t, next->q, next->acceleration, run->force);
     } else
         for (int i = 0; i < model->n_dof; ++i) run->force[i] = 0.0;
     fu_internal_forces(model, next->q, next->v, run->force);
@@ -43,7 +43,8 @@ static void matrix_of_cables(fu_run *run, const fu_equations *at)
 static void add_matrix_without_cables(fu_run *run, const fu_equations *at)
 {
     fu_bodies_matrix(run->model, at->next, at->psi, at->weights, &run->newton);
-    if (at->weights.inertia != 0.0) fu_coupling_masses(run->model, at->next->q, at->weights.inertia, &run->newton);
+    if (at->weights.inertia != 0.0)
+        fu_coupling_masses(run->model, at->next->t, at->next->q, at->weights.inertia, &run->newton);
     if (at->weights.stiffness != 0.0) fu_coupling_tangents(run->model, at, &run->newton);
 }
 

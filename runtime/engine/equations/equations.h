@@ -23,8 +23,8 @@ void fu_static_residual(fu_run *run);
 /* equations/refinement.c: refines accelerations of a state without constraints until they satisfy eq 38 to 1e-9 of the
  * forces; reaction: M q'' - Q on all dofs before and after, the force of the supports on those that are held. Returns
  * nonzero if that takes more than two corrections. */
-int fu_refine_accelerations(const fu_model *model, const double *q, fu_accelerator *work, double *acceleration,
-                            double *reaction);
+int fu_refine_accelerations(const fu_model *model, double t, const double *q, fu_accelerator *work,
+                            double *acceleration, double *reaction);
 
 /* equations/acceleration.c */
 /* Computes the constraint rows of all couplings. */
@@ -41,10 +41,10 @@ int fu_strike(const fu_model *model, const fu_state *state, fu_accelerator *work
               double *change);
 
 /* equations/energies.c */
-void fu_mass_times(const fu_model *model, const double *q, const double *a, double *f);
+void fu_mass_times(const fu_model *model, double t, const double *q, const double *a, double *f);
 double fu_kinetic_energy(const fu_model *model, double t, const double *q, const double *v);
 double fu_kinetic_energy_at(const fu_model *model, const fu_state *state);
-double fu_kinetic_energy_of_change(const fu_model *model, const double *q, const double *v);
+double fu_kinetic_energy_of_change(const fu_model *model, double t, const double *q, const double *v);
 double fu_elastic_energy(const fu_model *model, const fu_state *state);
 double fu_dissipation(const fu_model *model, const fu_state *state, const fu_accelerator *work);
 

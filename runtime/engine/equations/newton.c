@@ -256,7 +256,7 @@ int fu_newton_step(fu_run *run, const fu_newton *method, double h)
 double fu_filtered_size(fu_run *run)
 {
     const fu_model *model = run->model;
-    fu_mass_times(model, run->next.q, run->work, run->before);
+    fu_mass_times(model, run->next.t, run->next.q, run->work, run->before);
     fu_gather(model, run->before, run->rhs);
     for (int i = 0; i < model->n_extra; ++i) run->rhs[model->n_band + model->n_border_dof + i] = 0.0;
     const double begin = fu_clock();

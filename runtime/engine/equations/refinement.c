@@ -16,8 +16,8 @@ static double largest(int n, const double *x)
     return most;
 }
 
-int fu_refine_accelerations(const fu_model *model, const double *q, fu_accelerator *work, double *acceleration,
-                            double *reaction)
+int fu_refine_accelerations(const fu_model *model, double t, const double *q, fu_accelerator *work,
+                            double *acceleration, double *reaction)
 {
     const int n = model->n_band + model->n_border_dof;
     if (model->n_rows || model->n_extra) return 1;
@@ -29,7 +29,7 @@ int fu_refine_accelerations(const fu_model *model, const double *q, fu_accelerat
         for (int i = 0; i < n; ++i) work->rhs[i] = -work->rhs[i];
         fu_system_solve(&work->mass, model->lapack, work->rhs);
         fu_spread(model, work->rhs, work->work);
-        fu_mass_times(model, q, work->work, work->force);
+        fu_mass_times(model, t, q, work->work, work->force);
         for (int i = 0; i < model->n_dof; ++i) {
             acceleration[i] += work->work[i];
             reaction[i] += work->force[i];

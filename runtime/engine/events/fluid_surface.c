@@ -37,12 +37,12 @@ static void heights_of(const fu_model *model, const fu_drag *drag, const fu_stat
     if (!nodes) {
         fu_attachment_state end;
         fu_attachment_at(model, &drag->attachments[0], state, 0.0, FU_POINT, &end);
-        *low = *high = fu_drag_height(model, drag, end.p);
+        *low = *high = fu_drag_height(model, drag, state->t, end.p);
         return;
     }
-    *low = *high = fu_drag_height(model, drag, fu_drag_node(model, drag, 0, state->q));
+    *low = *high = fu_drag_height(model, drag, state->t, fu_drag_node(model, drag, 0, state->q));
     for (int k = 1; k < nodes; ++k) {
-        const double height = fu_drag_height(model, drag, fu_drag_node(model, drag, k, state->q));
+        const double height = fu_drag_height(model, drag, state->t, fu_drag_node(model, drag, k, state->q));
         *low = fmin(*low, height);
         *high = fmax(*high, height);
     }

@@ -13,7 +13,7 @@
 /* Returns the distance of a position within the table, with a surface that of the nearest position in the fluid. */
 static double margin_at(const fu_model *model, const fu_drag *drag, double t, const double *r)
 {
-    const double height = fu_drag_height(model, drag, r), to = fmin(fmax(height, drag->bottom), drag->surface);
+    const double height = fu_drag_height(model, drag, t, r), to = fmin(fmax(height, drag->bottom), drag->surface);
     double at[3];
     for (int d = 0; d < model->dim; ++d) at[d] = r[d] + (to - height) * drag->flow.up[d];
     return fu_flow_margin(model, &drag->flow, t, at);

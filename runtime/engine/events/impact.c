@@ -105,7 +105,7 @@ static int strike(fu_run *run, fu_active_contacts *t, double least)
         t->target[k] = back > contact->rest_velocity ? back : 0.0;
     }
     if (solve(run, t, least)) return 1;
-    if (t->taken < -ENERGY_TOLERANCE * fu_kinetic_energy_of_change(run->model, run->now.q, run->work)) {
+    if (t->taken < -ENERGY_TOLERANCE * fu_kinetic_energy_of_change(run->model, run->now.t, run->now.q, run->work)) {
         memset(t->target, 0, sizeof t->target);
         if (solve(run, t, least)) return 1;
     }

@@ -151,7 +151,7 @@ static void matrix(fu_run *run, double h)
     fu_system_clear(&run->newton);
     fu_dynamic_matrix(model, m.q, m.v, w->inertia, w->rate / stiffer, w->stiffness * stiffer, &run->newton);
     fu_bodies_matrix(model, &m, 0, *w, &run->newton);
-    fu_coupling_masses(model, m.q, w->inertia, &run->newton);
+    fu_coupling_masses(model, m.t, m.q, w->inertia, &run->newton);
     mean_stress(run, w->stiffness);
     fu_coupling_step_tangents(model, &at, &run->newton);
 }

@@ -234,7 +234,7 @@ static double error(fu_run *run, double h)
     const double factor = h * h * fu_alpha_error_factor(run);
     for (int i = 0; i < run->model->n_dof; ++i)
         run->work[i] = factor * (run->next.acceleration[i] - run->now.acceleration[i]);
-    fu_mass_times(run->model, run->next.q, run->work, run->before);
+    fu_mass_times(run->model, run->next.t, run->next.q, run->work, run->before);
     fu_linear_model_project(run->linear, run->before, w.change);
     fu_linear_model_solve(run->linear, factor_of(run, h), 0, w.change);
     if (weights_of(run, h).closes) fu_linear_keep_constraints(run, &w);

@@ -118,7 +118,7 @@ void fu_radau_right_side(fu_run *run, const double *r, double *unknowns)
         if (model->unknown_of_dof[i] >= 0) unknowns[model->unknown_of_dof[i]] = r[i];
     for (int i = 0; i < model->n_dof; ++i) run->work[i] = r[i];
     for (int k = 0; k < model->n_motions; ++k) run->work[model->motions[k].dof] = 0.0;
-    fu_mass_times(model, run->next.q, run->work, run->psi);
+    fu_mass_times(model, run->next.t, run->next.q, run->work, run->psi);
     fu_gather(model, run->psi, run->rhs);
     for (int i = 0; i < model->n_extra; ++i) run->rhs[beyond + i] = 0.0;
     border_times(run, unknowns);

@@ -17,7 +17,7 @@ static int accelerate(fu_run *run, double *acceleration, double *reaction, doubl
     if (run->mass_is_near && fabs(now->t - run->residual_at) <= FU_AT_ONCE * run->duration) {
         memcpy(acceleration, now->acceleration, sizeof(double) * (size_t)model->n_dof);
         memcpy(reaction, run->force, sizeof(double) * (size_t)model->n_dof);
-        if (!fu_refine_accelerations(model, now->q, &run->accelerator, acceleration, reaction)) return 0;
+        if (!fu_refine_accelerations(model, now->t, now->q, &run->accelerator, acceleration, reaction)) return 0;
     }
     run->mass_is_near = 1;
     return fu_accelerations(model, now, &run->accelerator, acceleration, reaction);

@@ -25,7 +25,7 @@ from ..linear.spectrum import EIGENVALUE_ROUNDING, STIFFNESS_ROUNDING, Incomplet
 from ..statics.balance import balance
 from ..statics.rest_state import RestState
 from ..statics.stability import count
-from ..statics.static_problem import StaticState, units_of
+from ..statics.static_problem import StaticState, units_of, without_waves
 from ..statics.sticking_ropes import with_sticking_wraps
 from .contact_edges import resolve_contact_edges
 from .stuck_wraps import stuck_wraps
@@ -97,6 +97,7 @@ def modes(scene: SceneData, n: int, about: RestState | None = None, as_drawn: bo
     Raises SceneError.
     """
     model = build(with_sticking_wraps(scene) if about is not None and about.wraps == "stick" else scene)
+    without_waves(model)
     if about is not None:
         resolve_contact_edges(model, scene, about.static_state["q"])
     static = StaticState(scene, EquilibriumSettings(), model)

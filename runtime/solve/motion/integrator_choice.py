@@ -14,6 +14,7 @@ from ...engine import Engine
 from ...errors import SceneError
 from ...integrators import AUTO, INTEGRATORS, Demands, Explicit, Integrator, Radau, stable_at
 from ...kernels.libraries import of_library
+from ...model.breakpoints import longest_step_in_waves
 from ...model.model import Model
 from ...model.taut_ropes import TautPointModel
 from ...parts.joint import Joint
@@ -22,6 +23,7 @@ from ...parts.rope_items import Sheave
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
 from ...parts.slide import Slide
+from ...parts.validation import show
 from ..linear.condensation import with_entries, without_forces
 from ..notes.supersonic_loads import outrunning
 from .stopping_distance import stopping_share
@@ -120,6 +122,7 @@ def tol_of(settings: RunSettings, method: Integrator) -> float:
 
 def _asked_for(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> tuple[Integrator, str]:
     """Return the integrator that the settings determine, directly or by the step, and the reason."""
+    check_step_in_waves(settings, scene)
     if settings.integrator != AUTO:
         chosen = INTEGRATORS[settings.integrator].of(settings.spectral_radius)
         check(chosen, scene, model, engine)
@@ -198,6 +201,14 @@ def demands_of(settings: RunSettings, scene: SceneData, model: Model, engine: En
         contact.is_hard and contact.friction_coefficient for contact in scene.contacts.values()) or any(
         rough_sheaves(scene.ropes.values()))
     return Demands(frequency, decay, slowest_rate(scene, model, settings.duration), friction, settings.tol)
+
+
+def check_step_in_waves(settings: RunSettings, scene: SceneData) -> None:
+    """Raise SceneError for a fixed step that goes over waves."""
+    for fluid in scene.fluids.values():
+        if settings.step is not None and settings.step > (longest := longest_step_in_waves([fluid])):
+            raise SceneError(fluid.where, f"has waves that a step of {show(settings.step, 's')} goes over",
+                             f"take a step of at most {show(longest, 's')}, a quarter of the shortest period")
 
 
 def check(integrator: Integrator, scene: SceneData, model: Model, engine: Engine) -> None:

@@ -112,6 +112,9 @@ def refuse_what_is_not_linear(scene: SceneData, model: Model) -> None:
     for cable in scene.cables.values():
         if cable.growth.signal is not None:
             raise SceneError(cable.where, f"{who} does not support a stress-free length that changes", remedy)
+    for fluid in scene.fluids.values():
+        if fluid.waves is not None:
+            raise SceneError(fluid.where, f"{who} does not support waves", remedy)
     for rope in scene.ropes.values():
         raise SceneError(rope.where, f"{who} does not support ropes that run over sheaves", remedy)
     for slide in scene.slides.values():

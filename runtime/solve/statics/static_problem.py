@@ -234,6 +234,12 @@ class StaticProblem(StaticState):
         return bool(np.all(past <= self.settings.tolerance * self.size))
 
 
+def without_waves(model: Model) -> None:
+    """Leave the waves of fluids out of a model: statics and modes are those of the still surface."""
+    for drag in model.drags:
+        drag.entries |= {"n_waves": 0, "move_fluid": False}
+
+
 def static_model(scene: SceneData) -> Model:
     """Return the model of a scene for statics: with ropes at rest among the bodies as drawn, see `with_ropes_at_rest`,
     and without the added mass of still fluids, which does not act at rest.
@@ -244,6 +250,7 @@ def static_model(scene: SceneData) -> Model:
     model = build(scene)
     for drag in model.drags:
         drag.has_inertia = drag.has_inertia and drag.fluid.moves
+    without_waves(model)
     model.q = with_ropes_at_rest(model, scene)
     return model
 

@@ -62,10 +62,11 @@ typedef struct {
 /* A mass that depends on the configuration. `force`, `residual` and `tangent` contain its inertial force at zero
  * accelerations. */
 typedef struct {
-    /* Adds M a to f. */
-    void (*force)(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a, double *f);
+    /* Adds M a to f, at the time t. */
+    void (*force)(const fu_model *model, const fu_coupling *coupling, double t, const double *q, const double *a,
+                  double *f);
     /* Adds scale M to a system. */
-    void (*matrix)(const fu_model *model, const fu_coupling *coupling, const double *q, double scale,
+    void (*matrix)(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double scale,
                    fu_system *system);
     /* Returns the kinetic energy, J, at the velocities v; or of these alone, if the coupling is of a moving fluid and
      * past_fluid is zero. */

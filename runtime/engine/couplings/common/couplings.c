@@ -105,23 +105,23 @@ void fu_coupling_step_tangents(const fu_model *model, const fu_equations *at, fu
         if (c->type->step_tangent) c->type->step_tangent(model, c, at, system);
 }
 
-void fu_coupling_inertia(const fu_model *model, const double *q, const double *a, double *f)
+void fu_coupling_inertia(const fu_model *model, double t, const double *q, const double *a, double *f)
 {
     FU_EACH_COUPLING(c, model->always_active, model->n_inertial ? model->n_always_active : 0)
-        if (c->has_inertia) c->type->inertia->force(model, c, q, a, f);
+        if (c->has_inertia) c->type->inertia->force(model, c, t, q, a, f);
 }
 
 /* Adds M a of the couplings whose residuals do not contain it. */
-void fu_coupling_inertia_beside_residuals(const fu_model *model, const double *q, const double *a, double *f)
+void fu_coupling_inertia_beside_residuals(const fu_model *model, double t, const double *q, const double *a, double *f)
 {
     FU_EACH_COUPLING(c, model->always_active, model->n_inertial ? model->n_always_active : 0)
-        if (c->has_inertia && !c->type->inertia->in_residual) c->type->inertia->force(model, c, q, a, f);
+        if (c->has_inertia && !c->type->inertia->in_residual) c->type->inertia->force(model, c, t, q, a, f);
 }
 
-void fu_coupling_masses(const fu_model *model, const double *q, double scale, fu_system *system)
+void fu_coupling_masses(const fu_model *model, double t, const double *q, double scale, fu_system *system)
 {
     FU_EACH_COUPLING(c, model->always_active, model->n_inertial ? model->n_always_active : 0)
-        if (c->has_inertia) c->type->inertia->matrix(model, c, q, scale, system);
+        if (c->has_inertia) c->type->inertia->matrix(model, c, t, q, scale, system);
 }
 
 double fu_coupling_kinetic_energy(const fu_model *model, double t, const double *q, const double *v, int past_fluid)

@@ -23,9 +23,9 @@ void fu_coupling_residuals(const fu_model *model, const fu_equations *at, double
 void fu_coupling_tangents(const fu_model *model, const fu_equations *at, fu_system *system);
 void fu_coupling_step_residuals(const fu_model *model, const fu_equations *at, double *f, double *internal);
 void fu_coupling_step_tangents(const fu_model *model, const fu_equations *at, fu_system *system);
-void fu_coupling_inertia(const fu_model *model, const double *q, const double *a, double *f);
-void fu_coupling_inertia_beside_residuals(const fu_model *model, const double *q, const double *a, double *f);
-void fu_coupling_masses(const fu_model *model, const double *q, double scale, fu_system *system);
+void fu_coupling_inertia(const fu_model *model, double t, const double *q, const double *a, double *f);
+void fu_coupling_inertia_beside_residuals(const fu_model *model, double t, const double *q, const double *a, double *f);
+void fu_coupling_masses(const fu_model *model, double t, const double *q, double scale, fu_system *system);
 double fu_coupling_kinetic_energy(const fu_model *model, double t, const double *q, const double *v, int past_fluid);
 double fu_kinetic_energy_beyond_velocities(const fu_model *model, const fu_state *state);
 double fu_coupling_potential_energy(const fu_model *model, const fu_state *state);

@@ -36,9 +36,10 @@ static void add_rise(const fu_drum *drum, const fu_drum_state *at, double y[Y])
 
 /* --- inertia ---------------------------------------------------------------------------------------------------- */
 
-static void inertial_force(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a,
-                           double *f)
+static void inertial_force(const fu_model *model, const fu_coupling *coupling, double t, const double *q,
+                           const double *a, double *f)
 {
+    (void)t;
     const fu_drum *drum = drum_of(coupling);
     const fu_state state = {.q = (double *)q};
     double M[Y][Y], acceleration[Y] = {0.0}, y[Y] = {0.0};
@@ -56,9 +57,10 @@ static void inertial_force(const fu_model *model, const fu_coupling *coupling, c
     scatter(drum, &at, y, f);
 }
 
-static void mass_matrix(const fu_model *model, const fu_coupling *coupling, const double *q, double scale,
+static void mass_matrix(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double scale,
                         fu_system *system)
 {
+    (void)t;
     const fu_state state = {.q = (double *)q};
     double M[Y][Y];
     fu_wheel_column columns[COLUMNS];

@@ -23,8 +23,8 @@ typedef struct {
 
 static surroundings surroundings_of(const fu_model *model, const fu_drag *drag, double t, const double *r)
 {
-    surroundings out = {.wet = fu_wet_part(model, drag, r)};
-    fu_flow_at(model, &drag->flow, t, r, &out.flow);
+    surroundings out = {.wet = fu_wet_part(model, drag, t, r)};
+    fu_flow_at(model, drag, t, r, &out.flow);
     return out;
 }
 
@@ -71,7 +71,7 @@ static void on_point(const fu_drag *drag, const fu_attachment_state *end, const 
 {
     (drag->is_morison ? drag->kernel->morison_of_point : drag->kernel->inertia_of_point)(
         end->A, drag->added, end->omega, drag->displaced, end->v, acceleration, of->flow.U, of->flow.rate,
-        of->flow.gradient, &of->wet.part, drag->flow.up, left, moment, external);
+        of->flow.gradient, &of->wet.part, of->wet.up, left, moment, external);
 }
 
 static void on_body(const fu_model *model, const fu_drag *drag, const fu_state *state, const double *a,
@@ -100,7 +100,7 @@ static void tangent_of_body(const fu_model *model, const fu_drag *drag, const fu
     on_point(drag, &end, acceleration, &of, left, moment, &external);
     (drag->is_morison ? drag->kernel->morison_of_point_tangent : drag->kernel->inertia_of_point_tangent)(
         end.A, drag->added, end.omega, drag->displaced, end.v, acceleration, of.flow.U, of.flow.rate, of.flow.gradient,
-        &of.wet.part, drag->flow.up, f_by, moment_by);
+        &of.wet.part, of.wet.up, f_by, moment_by);
     fu_point_motion_at(model, &drag->attachments[0], state, FU_POINT | FU_AXES, left, moment, psi, weights.rate,
                        &motion);
     fu_changes(&motion, dim, f_by, f);

@@ -28,8 +28,8 @@ static relative_motion motion_in_fluid(const fu_model *model, const fu_drag *dra
                                        const double *v)
 {
     const int dim = model->dim;
-    relative_motion out = {.wet = fu_wet_part(model, drag, r).part};
-    fu_flow_at(model, &drag->flow, t, r, &out.flow);
+    relative_motion out = {.wet = fu_wet_part(model, drag, t, r).part};
+    fu_flow_at(model, drag, t, r, &out.flow);
     for (int d = 0; d < dim; ++d) {
         out.w[d] = v[d] - out.flow.U[d];
         out.material[d] = out.flow.rate[d] + fu_dot(dim, out.flow.gradient + d * dim, out.flow.U);
@@ -61,7 +61,7 @@ typedef struct {
 static wet_step wet_over_step(const fu_model *model, const fu_drag *drag, const double *r, const double *r_next)
 {
     wet_step out = {1.0, 0.0, {0.0}};
-    const double from = fu_drag_height(model, drag, r), to = fu_drag_height(model, drag, r_next);
+    const double from = fu_drag_height(model, drag, 0.0, r), to = fu_drag_height(model, drag, 0.0, r_next);
     const double before = fu_wet_at_height(drag, from).part, after = fu_wet_at_height(drag, to).part;
     const double slope = fabs(to - from) > MIN_RISE * drag->extent ? (after - before) / (to - from)
                                                                    : fu_wet_at_height(drag, 0.5 * (from + to)).slope;

@@ -10,11 +10,11 @@
 
 /* Computes the impulse M w and M of a body at a point of the velocity at->v relative to the fluid; A: axes of the body.
  */
-static void impulse(const fu_model *model, const fu_drag *drag, const fu_drag_place *at, const double *A, double p[3],
-                    double M[9])
+static void impulse(const fu_model *model, const fu_drag *drag, double t, const fu_drag_place *at, const double *A,
+                    double p[3], double M[9])
 {
     drag->kernel->impulse_of_point(A, drag->added, at->v, p, M);
-    const double part = fu_wet_part(model, drag, at->r).part;
+    const double part = fu_wet_part(model, drag, t, at->r).part;
     for (int i = 0; i < model->dim; ++i) p[i] *= part;
     for (int i = 0; i < model->dim * model->dim; ++i) M[i] *= part;
 }
@@ -56,13 +56,13 @@ FU_SIMD_FUNCTION(add_force, add_force_at,
                   double *K),
                  (model, drag, block, loop, K))
 
-void fu_added_mass_force(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a,
+void fu_added_mass_force(const fu_model *model, const fu_coupling *coupling, double t, const double *q, const double *a,
                          double *f)
 {
     const fu_drag *drag = (const fu_drag *)coupling;
     if (drag->cable >= 0) {
         const fu_drag_sums sums = {.f = f};
-        fu_drag_loop loop = {.sums = &sums, .is_still = 1};
+        fu_drag_loop loop = {.t = t, .sums = &sums, .is_still = 1};
         fu_drag_visit(model, drag, q, a, 0, add_force, &loop, 0);
         return;
     }
@@ -76,7 +76,7 @@ void fu_added_mass_force(const fu_model *model, const fu_coupling *coupling, con
     place_on_body(model, drag, q, model->zero, &end, &at);
     for (int d = 0; d < model->dim; ++d)
         for (int i = 0; i < end.n; ++i) at.v[d] += end.P[d * end.n + i] * a[end.at[i]];
-    impulse(model, drag, &at, end.A, p, M);
+    impulse(model, drag, t, &at, end.A, p, M);
     fu_add_wrench(model->dim, &end, p, 0, 1.0, f);
 }
 
@@ -95,13 +95,13 @@ FU_SIMD_FUNCTION(add_mass, add_mass_at,
                   double *K),
                  (model, drag, block, loop, K))
 
-void fu_added_mass_matrix(const fu_model *model, const fu_coupling *coupling, const double *q, double scale,
+void fu_added_mass_matrix(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double scale,
                           fu_system *system)
 {
     const fu_drag *drag = (const fu_drag *)coupling;
     const int dim = model->dim;
     if (drag->cable >= 0) {
-        fu_drag_loop loop = {.has_matrix = 1, .is_still = 1, .weights = {.stiffness = scale}};
+        fu_drag_loop loop = {.t = t, .has_matrix = 1, .is_still = 1, .weights = {.stiffness = scale}};
         fu_drag_visit(model, drag, q, model->zero, 0, add_mass, &loop, system);
         return;
     }
@@ -113,7 +113,7 @@ void fu_added_mass_matrix(const fu_model *model, const fu_coupling *coupling, co
     fu_attachment_state end;
     fu_drag_place at;
     place_on_body(model, drag, q, model->zero, &end, &at);
-    impulse(model, drag, &at, end.A, p, M);
+    impulse(model, drag, t, &at, end.A, p, M);
     for (int c = 0; c < dim; ++c)
         for (int d = 0; d < dim; ++d)
             for (int i = 0; i < end.n; ++i) changes[c * end.n + i] += M[c * dim + d] * end.P[d * end.n + i];
@@ -152,8 +152,8 @@ double fu_added_mass_kinetic_energy(const fu_model *model, const fu_coupling *co
     fu_drag_place at;
     fu_flow_state flow = {{0.0}, {0.0}, {0.0}};
     place_on_body(model, drag, q, v, &end, &at);
-    if (past_fluid) fu_flow_at(model, &drag->flow, t, at.r, &flow);
+    if (past_fluid) fu_flow_at(model, drag, t, at.r, &flow);
     for (int d = 0; d < model->dim; ++d) at.v[d] -= flow.U[d];
-    impulse(model, drag, &at, end.A, p, M);
+    impulse(model, drag, t, &at, end.A, p, M);
     return 0.5 * fu_dot(model->dim, p, at.v);
 }

@@ -33,7 +33,7 @@ FU_INLINE void take_wet_part(int dim, const fu_drag_block *block, int with_deriv
     const fu_points part = block->fluid.wet[0], slope = block->fluid.wet[1];
     for (int i = 0; i < dim; ++i) {
         for (int j = 0; j < dim && with_derivatives; ++j) {
-            out->by_wet[i * dim + j] = (out->f[i] + out->buoyancy[i]) * slope * block->constants->up[j];
+            out->by_wet[i * dim + j] = (out->f[i] + out->buoyancy[i]) * slope * block->fluid.up[j];
             out->by_slope[i * dim + j] *= part;
             out->by_w[i * dim + j] *= part;
         }
@@ -71,7 +71,7 @@ static void inertia_at(const fu_drag_block *block, fu_points left[3], fu_points 
     const fu_block_fluid *fluid = &block->fluid;
     (c->is_morison ? c->kernel->morison_of_cable : c->kernel->inertia_of_cable)(
         at->r_x, at->r_x_rate, c->added, &c->displaced, at->v, at->a, fluid->U, fluid->rate, fluid->gradient,
-        fluid->wet, c->up, left, on_slope, power);
+        fluid->wet, fluid->up, left, on_slope, power);
 }
 
 void fu_block_inertia(const fu_drag_block *block, fu_points left[3], fu_points on_slope[3])
@@ -170,7 +170,7 @@ FU_INLINE void add_inertia(int dim, const fu_drag_block *block, double rate, con
     fu_points f_t[9], f_t_rate[9], f_r[9], f_v[9], g_t[9], g_r[9], g_v[9];
     (c->is_morison ? c->kernel->morison_of_cable_tangent : c->kernel->inertia_of_cable_tangent)(
         at->r_x, at->r_x_rate, c->added, &c->displaced, at->v, at->a, fluid->U, fluid->rate, fluid->gradient,
-        fluid->wet, c->up, f_t, f_t_rate, f_r, f_v, g_t, g_r, g_v);
+        fluid->wet, fluid->up, f_t, f_t_rate, f_r, f_v, g_t, g_r, g_v);
     for (int i = 0; i < size; ++i) {
         by[i] += *scale * (f_r[i] + rate * f_v[i]);
         by[size + i] += *scale * (f_t[i] + rate * f_t_rate[i]);

@@ -209,11 +209,12 @@ static double step_dissipation(const fu_model *model, const fu_coupling *couplin
     return at->h * power.dissipated;
 }
 
-/* Added mass of ropes has no equations over a step that conserves energy, Morison's equation has no energy. */
+/* Added mass of ropes and waves have no equations over a step that conserves energy, Morison's equation has no energy.
+ */
 static int has_step(const fu_coupling *coupling)
 {
     const fu_drag *drag = (const fu_drag *)coupling;
-    return !(coupling->has_inertia && (drag->on.kernel || drag->is_morison));
+    return !drag->waves.n_waves && !(coupling->has_inertia && (drag->on.kernel || drag->is_morison));
 }
 
 static double step_work(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
@@ -237,6 +238,7 @@ static const char *const role[] = {"drag", 0};
 static const char *const wetted[] = {"all", "section", "sphere", "column", 0};
 static const char *const profiles[] = {"uniform", "power", "table", 0};
 #define FLOW_FIELD(member, kind, words) {#member, kind, offsetof(fu_drag, flow.member), 1, 0, words}
+#define WAVES_FIELD(member, kind) {#member, kind, offsetof(fu_drag, waves.member), 1, 0, NULL}
 #define FLOW_VECTOR(member) {#member, FU_REAL, offsetof(fu_drag, flow.member), 3, sizeof(double), NULL}
 
 static const fu_field fields[] = {
@@ -258,6 +260,11 @@ static const fu_field fields[] = {
     FLOW_FIELD(table, FU_REALS, 0),
     FLOW_VECTOR(origin),
     {"axes", FU_REAL, offsetof(fu_drag, flow.axes), 9, sizeof(double), NULL},
+    WAVES_FIELD(n_waves, FU_INTEGER),
+    WAVES_FIELD(move_fluid, FU_INTEGER),
+    WAVES_FIELD(wave_vectors, FU_REALS),
+    WAVES_FIELD(wave_numbers, FU_REALS),
+    WAVES_FIELD(inv_depth, FU_REAL),
     FU_FIELD(fu_drag, cable, FU_INTEGER, 0),
     FU_FIELD(fu_drag, first, FU_INTEGER, 0),
     FU_FIELD(fu_drag, n_elements, FU_INTEGER, 0),

@@ -36,8 +36,19 @@ typedef struct {
     double U[3], rate[3], gradient[9];
 } fu_flow_state;
 
-void fu_flow_at(const fu_model *model, const fu_flow *flow, double t, const double *r, fu_flow_state *out);
-double fu_flow_margin(const fu_model *model, const fu_flow *flow, double t, const double *r);
+/* Linear waves on the surface of a fluid: the vectors of n (n x dim), and their numbers as the kernels take them; the
+ * reciprocal of the depth, 0 for infinite depth. move_fluid: zero in the fluid above the surface. */
+#define FU_WAVE_NUMBERS 5
+typedef struct {
+    int n_waves, move_fluid;
+    const double *wave_vectors, *wave_numbers;
+    double inv_depth;
+} fu_waves;
+
+/* The elevation of a surface at a place, m, its rate there, and its derivatives by the place. */
+typedef struct {
+    double eta, rate, slope[3];
+} fu_elevation;
 
 #define FU_NO_SURFACE 1e300          /* m: beyond all heights (runtime/parts/fluid.py) */
 #define FU_SURFACE_EVENT_FUNCTIONS 4 /* events of its two surfaces */
@@ -51,6 +62,7 @@ typedef struct {
     fu_coupling base; /* base.has_inertia: with added mass */
     const fu_drag_kernels *kernel;
     fu_flow flow;
+    fu_waves waves;
     int cable;              /* -1: at a point of a body or of a cable, or along a span */
     int first, n_elements;  /* elements of the cable on which it acts */
     fu_span_elements on;    /* the span of a rope; without kernels: none */
@@ -96,9 +108,10 @@ typedef struct {
     double shapes[FU_DRAG_POINTS * FU_MAX_COORDINATES];
 } fu_drag_points;
 
-/* A wet part, and its derivatives by the height of the point, 1/m and 1/m^2. */
+/* A wet part, its derivatives by the height of the point above the surface, 1/m and 1/m^2, and its rate at a fixed
+ * place, 1/s; up: derivatives of that height by the place. */
 typedef struct {
-    double part, slope, curvature;
+    double part, slope, curvature, rate, up[3];
 } fu_wetness;
 
 /* A point of a body, or of the material in a span of a rope, in the fluid. r_x, the slope, and `a`, acceleration, of a
@@ -147,7 +160,7 @@ typedef struct {
 
 /* The fluid at the points of a block: as fu_flow_state and fu_wetness. */
 typedef struct {
-    fu_points U[3], rate[3], gradient[9], wet[3];
+    fu_points U[3], rate[3], gradient[9], wet[4], up[3]; /* wet: without its up */
 } fu_block_fluid;
 
 /* Forces at the points of a block, as fu_drag_action. of_section: of a beam's foil the forces on r, r_x and chord, with
@@ -160,7 +173,7 @@ typedef struct {
 typedef struct {
     const fu_drag_blocks *kernel;
     int is_morison;
-    fu_points coefficients[3], lift[2], section[3], added[2], displaced, up[3];
+    fu_points coefficients[3], lift[2], section[3], added[2], displaced;
 } fu_block_constants;
 
 /* A block of points from the k-th of an element on, whose first dof is `first`. */
@@ -225,13 +238,24 @@ void fu_block_subtract(int dim, const fu_block_shapes *shapes, int n_fields, con
 void fu_block_add_matrix(int dim, const fu_block_shapes *shapes, int n_rows, int n_columns, const fu_points *by,
                          double *K);
 
-/* couplings/fluid/wetness.c: the wet part at a height; the height of a point, m; the points of quadrature of an element
- * at the coordinates e, on a span without shape functions, and over a step between two coordinates. */
+/* couplings/fluid/velocity_field.c: the velocity of the fluid; the distance within its table, see there. */
+void fu_flow_at(const fu_model *model, const fu_drag *drag, double t, const double *r, fu_flow_state *out);
+double fu_flow_margin(const fu_model *model, const fu_flow *flow, double t, const double *r);
+
+/* couplings/fluid/waves.c: the elevation at a place; adds the motion of the fluid. */
+fu_elevation fu_elevation_at(const fu_model *model, const fu_drag *drag, double t, const double *r);
+void fu_add_waves(const fu_model *model, const fu_drag *drag, double t, const double *r, fu_flow_state *out);
+
+/* couplings/fluid/wetness.c: the wet part at a height; the height of a point above the elevation, m; the points of
+ * quadrature of an element at the coordinates e, on a span without shape functions, and over a step between two
+ * coordinates. */
 fu_wetness fu_wet_at_height(const fu_drag *drag, double height);
-fu_wetness fu_wet_part(const fu_model *model, const fu_drag *drag, const double *r); /* at a point */
+/* at a point: */
+fu_wetness fu_wet_part(const fu_model *model, const fu_drag *drag, double t, const double *r);
 double fu_wet_reach(const fu_drag *drag); /* largest distance from a surface at which the wet part changes, m */
-double fu_drag_height(const fu_model *model, const fu_drag *drag, const double *r);
-void fu_drag_points_on(const fu_model *model, const fu_drag *drag, int element, const double *e, fu_drag_points *out);
+double fu_drag_height(const fu_model *model, const fu_drag *drag, double t, const double *r);
+void fu_drag_points_on(const fu_model *model, const fu_drag *drag, double t, int element, const double *e,
+                       fu_drag_points *out);
 void fu_drag_points_on_span(const fu_model *model, const fu_drag *drag, const fu_span_element *on, fu_drag_points *out);
 void fu_drag_points_over(const fu_model *model, const fu_drag *drag, int element, const double *e, const double *e_next,
                          fu_drag_points *out);
@@ -298,9 +322,9 @@ void fu_added_mass_tangent(const fu_model *model, const fu_drag *drag, const fu_
 void fu_added_mass_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out);
 
 /* couplings/fluid/added_mass_matrix.c */
-void fu_added_mass_force(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a,
+void fu_added_mass_force(const fu_model *model, const fu_coupling *coupling, double t, const double *q, const double *a,
                          double *f);
-void fu_added_mass_matrix(const fu_model *model, const fu_coupling *coupling, const double *q, double scale,
+void fu_added_mass_matrix(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double scale,
                           fu_system *system);
 double fu_added_mass_kinetic_energy(const fu_model *model, const fu_coupling *coupling, double t, const double *q,
                                     const double *v, int past_fluid);

@@ -19,14 +19,13 @@ static fu_block_constants constants_of(const fu_drag *drag)
     broadcast(3, drag->section, out.section);
     broadcast(2, drag->added, out.added);
     broadcast(1, &drag->displaced, &out.displaced);
-    broadcast(3, drag->flow.up, out.up);
     return out;
 }
 
 /* Returns whether the velocity of a fluid is the same everywhere. */
-static int is_uniform(const fu_flow *flow)
+static int is_uniform(const fu_drag *drag)
 {
-    return !flow->degree && flow->profile == FU_UNIFORM;
+    return !drag->flow.degree && drag->flow.profile == FU_UNIFORM && !drag->waves.move_fluid;
 }
 
 /* Takes the fluid at one point of a block from the p-th on. */
@@ -36,7 +35,7 @@ static void fluid_from(const fu_model *model, const fu_drag *drag, double t, int
     double r[3];
     fu_flow_state flow;
     fu_block_vector(model->dim, motion->r, p, r);
-    fu_flow_at(model, &drag->flow, t, r, &flow);
+    fu_flow_at(model, drag, t, r, &flow);
     for (; p < FU_BLOCK_POINTS; ++p) {
         for (int d = 0; d < model->dim; ++d) {
             out->U[d][p] = flow.U[d];
@@ -46,16 +45,18 @@ static void fluid_from(const fu_model *model, const fu_drag *drag, double t, int
     }
 }
 
-static void wet_part_from(const fu_model *model, const fu_drag *drag, int p, const fu_block_motion *motion,
+static void wet_part_from(const fu_model *model, const fu_drag *drag, double t, int p, const fu_block_motion *motion,
                           fu_block_fluid *out)
 {
     double r[3];
     fu_block_vector(model->dim, motion->r, p, r);
-    const fu_wetness wet = fu_wet_part(model, drag, r);
+    const fu_wetness wet = fu_wet_part(model, drag, t, r);
     for (; p < FU_BLOCK_POINTS; ++p) {
         out->wet[0][p] = wet.part;
         out->wet[1][p] = wet.slope;
         out->wet[2][p] = wet.curvature;
+        out->wet[3][p] = wet.rate;
+        for (int d = 0; d < model->dim; ++d) out->up[d][p] = wet.up[d];
     }
 }
 
@@ -63,12 +64,12 @@ static void wet_part_from(const fu_model *model, const fu_drag *drag, int p, con
 static void fluid_at(const fu_model *model, const fu_drag *drag, const fu_drag_loop *loop, int is_first,
                      const fu_block_shapes *shapes, const fu_block_motion *motion, fu_block_fluid *out)
 {
-    const int uniform = loop->is_still || is_uniform(&drag->flow), all_wet = drag->wet == FU_ALL_WET;
+    const int uniform = loop->is_still || is_uniform(drag), all_wet = drag->wet == FU_ALL_WET;
     if (is_first && loop->is_still) memset(out, 0, sizeof *out);
     for (int p = 0; p < shapes->n && !loop->is_still && (!uniform || (is_first && p == 0)); ++p)
         fluid_from(model, drag, loop->t, p, motion, out);
     for (int p = 0; p < shapes->n && (!all_wet || (is_first && p == 0)); ++p)
-        wet_part_from(model, drag, p, motion, out);
+        wet_part_from(model, drag, loop->t, p, motion, out);
 }
 
 void fu_drag_visit(const fu_model *model, const fu_drag *drag, const double *q, const double *v, const double *a,
@@ -87,7 +88,7 @@ void fu_drag_visit(const fu_model *model, const fu_drag *drag, const double *q, 
     for (int e = drag->first; e < drag->first + drag->n_elements; ++e) {
         block.element = e;
         block.first = fu_element_entry(cable, e);
-        if (is_first || !points_alike) fu_drag_points_on(model, drag, e, q + block.first, &points);
+        if (is_first || !points_alike) fu_drag_points_on(model, drag, loop->t, e, q + block.first, &points);
         if (loop->has_matrix) memset(K, 0, sizeof(double) * (size_t)(all * all));
         for (block.from = 0; block.from < points.n; block.from += FU_BLOCK_POINTS) {
             if (is_first || !points_alike || points.n > FU_BLOCK_POINTS)

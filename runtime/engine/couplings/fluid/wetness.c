@@ -36,8 +36,8 @@ static fu_wetness below(const fu_drag *drag, double level, double height)
 {
     const double u = (level - height) / drag->extent, end = end_of(drag);
     double e, c, c_u, c_uu;
-    if (u <= -end) return (fu_wetness){0.0, 0.0, 0.0};
-    if (u >= end) return (fu_wetness){1.0, 0.0, 0.0};
+    if (u <= -end) return (fu_wetness){.part = 0.0};
+    if (u >= end) return (fu_wetness){.part = 1.0};
     if (drag->wet == FU_WET_SPHERE) drag->kernel->wet_sphere(&u, &e, &c, &c_u, &c_uu);
     else if (drag->wet == FU_WET_SECTION) {
         const double theta = asin(u);
@@ -54,24 +54,39 @@ static fu_wetness below(const fu_drag *drag, double level, double height)
             c_uu = -c_uu;
         }
     }
-    return (fu_wetness){c, -c_u / drag->extent, c_uu / (drag->extent * drag->extent)};
+    return (fu_wetness){.part = c, .slope = -c_u / drag->extent, .curvature = c_uu / (drag->extent * drag->extent)};
 }
 
 fu_wetness fu_wet_at_height(const fu_drag *drag, double height)
 {
     const fu_wetness top = below(drag, drag->surface, height), bottom = below(drag, drag->bottom, height);
-    return (fu_wetness){top.part - bottom.part, top.slope - bottom.slope, top.curvature - bottom.curvature};
+    return (fu_wetness){.part = top.part - bottom.part,
+                        .slope = top.slope - bottom.slope,
+                        .curvature = top.curvature - bottom.curvature};
 }
 
-double fu_drag_height(const fu_model *model, const fu_drag *drag, const double *r)
+static double height_above_still_level(const fu_model *model, const fu_drag *drag, const double *r)
 {
     return drag->flow.base + fu_dot(model->dim, drag->flow.up, r);
 }
 
-fu_wetness fu_wet_part(const fu_model *model, const fu_drag *drag, const double *r)
+double fu_drag_height(const fu_model *model, const fu_drag *drag, double t, const double *r)
 {
-    return drag->wet == FU_ALL_WET ? (fu_wetness){1.0, 0.0, 0.0}
-                                   : fu_wet_at_height(drag, fu_drag_height(model, drag, r));
+    const double height = height_above_still_level(model, drag, r);
+    return drag->waves.n_waves ? height - fu_elevation_at(model, drag, t, r).eta : height;
+}
+
+fu_wetness fu_wet_part(const fu_model *model, const fu_drag *drag, double t, const double *r)
+{
+    fu_wetness out = {.part = 1.0};
+    fu_elevation at = {0.0, 0.0, {0.0}};
+    if (drag->wet != FU_ALL_WET) {
+        if (drag->waves.n_waves) at = fu_elevation_at(model, drag, t, r);
+        out = fu_wet_at_height(drag, height_above_still_level(model, drag, r) - at.eta);
+        out.rate = -out.slope * at.rate;
+    }
+    for (int d = 0; d < model->dim; ++d) out.up[d] = drag->flow.up[d] - at.slope[d];
+    return out;
 }
 
 /* Heights of the axis over a span of an element: a0 + a1 x + a2 x^2 + a3 x^3, x from 0 to 1. */
@@ -154,7 +169,7 @@ static const double GATHERED[2][8] = {
 /* An element of a cable, or of a span of a rope: its number, the number of its shape functions, its length, m. */
 typedef struct {
     int number, n;
-    double length;
+    double length, t;
     const fu_cable *cable;     /* null: of a span */
     const fu_span_element *on; /* null: of a cable */
 } element;
@@ -204,6 +219,34 @@ static double along_axis(const fu_model *model, const fu_drag *drag, int n, cons
     return sum;
 }
 
+/* Computes the height of a point of a cable above a surface with waves, and its slope by x. */
+static void above_waves(const fu_model *model, const fu_drag *drag, double t, int n, const double *N, const double *N_x,
+                        const double *e, double *height, double *slope)
+{
+    const int dim = model->dim;
+    double r[3] = {0.0}, r_x[3] = {0.0};
+    for (int k = 0; k < n; ++k)
+        for (int d = 0; d < dim; ++d) {
+            r[d] += N[k] * e[k * dim + d];
+            r_x[d] += N_x[k] * e[k * dim + d];
+        }
+    const fu_elevation at = fu_elevation_at(model, drag, t, r);
+    *height = height_above_still_level(model, drag, r) - at.eta;
+    *slope = fu_dot(dim, drag->flow.up, r_x) - fu_dot(dim, at.slope, r_x);
+}
+
+/* Computes the height above the surface of a point of a cable with these shape functions, and its slope by x. */
+static void on_cable_at(const fu_model *model, const fu_drag *drag, const element *of, const double *N,
+                        const double *N_x, const double *e, double *height, double *slope)
+{
+    if (drag->waves.n_waves) {
+        above_waves(model, drag, of->t, of->n, N, N_x, e, height, slope);
+        return;
+    }
+    *height = drag->flow.base + along_axis(model, drag, of->n, N, e);
+    *slope = along_axis(model, drag, of->n, N_x, e);
+}
+
 /* Computes the height of a point at x of an element's axis, and its slope by x. */
 static void axis_at(const fu_model *model, const fu_drag *drag, const element *of, const double *e, double x,
                     double *height, double *slope)
@@ -211,13 +254,12 @@ static void axis_at(const fu_model *model, const fu_drag *drag, const element *o
     if (of->cable) {
         double N[FU_MAX_COORDINATES], N_x[FU_MAX_COORDINATES];
         of->cable->kernel->on_axis(of->length, x, N, N_x);
-        *height = drag->flow.base + along_axis(model, drag, of->n, N, e);
-        *slope = along_axis(model, drag, of->n, N_x, e);
+        on_cable_at(model, drag, of, N, N_x, e, height, slope);
         return;
     }
     double r[3], r_S[3], velocity[3];
     drag->on.kernel->point(of->length, e, of->on->v, of->on->s_rate, x / of->length, r, r_S, velocity);
-    *height = fu_drag_height(model, drag, r);
+    *height = height_above_still_level(model, drag, r);
     *slope = fu_dot(model->dim, drag->flow.up, r_S);
 }
 
@@ -225,16 +267,15 @@ static void axis_at(const fu_model *model, const fu_drag *drag, const element *o
 static int is_uncut(const fu_model *model, const fu_drag *drag, const element *of, const double *e, double *height)
 {
     const int n = of->n, per_node = of->cable ? of->cable->per_node : drag->on.kernel->coordinates / FU_SPAN_ENDS;
-    double low = fu_drag_height(model, drag, e), high = low, steepest = 0.0;
-    const double last = fu_drag_height(model, drag, e + per_node);
+    double low = fu_drag_height(model, drag, of->t, e), high = low, steepest = 0.0;
+    const double last = fu_drag_height(model, drag, of->t, e + per_node);
     low = fmin(low, last);
     high = fmax(high, last);
     for (int g = 0; g < drag->n_points; ++g) {
         double h, slope;
         if (of->cable) {
             const fu_quadrature_point point = fu_drag_point(drag, n, of->number, g);
-            h = drag->flow.base + along_axis(model, drag, n, point.N, e);
-            slope = along_axis(model, drag, n, point.N_x, e);
+            on_cable_at(model, drag, of, point.N, point.N_x, e, &h, &slope);
         } else axis_at(model, drag, of, e, of->length * PLAIN[0][g], &h, &slope);
         low = fmin(low, h);
         high = fmax(high, h);
@@ -312,30 +353,32 @@ static void points_of(const fu_model *model, const fu_drag *drag, const element 
     }
 }
 
-static element of_cable(const fu_model *model, const fu_drag *drag, int number)
+static element of_cable(const fu_model *model, const fu_drag *drag, double t, int number)
 {
     const fu_cable *cable = &model->cables[drag->cable];
-    return (element){number, cable->coordinates / model->dim, fu_element_length(cable, number), cable, 0};
+    return (element){number, cable->coordinates / model->dim, fu_element_length(cable, number), t, cable, 0};
 }
 
-void fu_drag_points_on(const fu_model *model, const fu_drag *drag, int number, const double *e, fu_drag_points *out)
+void fu_drag_points_on(const fu_model *model, const fu_drag *drag, double t, int number, const double *e,
+                       fu_drag_points *out)
 {
-    const element of = of_cable(model, drag, number);
+    const element of = of_cable(model, drag, t, number);
     shape one[1] = {{.e = e}};
     points_of(model, drag, &of, one, 1, out);
 }
 
 void fu_drag_points_on_span(const fu_model *model, const fu_drag *drag, const fu_span_element *on, fu_drag_points *out)
 {
-    const element of = {on->number, 0, on->l, 0, on};
+    const element of = {on->number, 0, on->l, 0.0, 0, on};
     shape one[1] = {{.e = on->e}};
     points_of(model, drag, &of, one, 1, out);
 }
 
+/* The scheme that conserves energy takes no waves, so that the time does not matter. */
 void fu_drag_points_over(const fu_model *model, const fu_drag *drag, int number, const double *e, const double *e_next,
                          fu_drag_points *out)
 {
-    const element of = of_cable(model, drag, number);
+    const element of = of_cable(model, drag, 0.0, number);
     shape both[2] = {{.e = e}, {.e = e_next}};
     points_of(model, drag, &of, both, 2, out);
 }

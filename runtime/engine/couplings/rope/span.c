@@ -9,9 +9,10 @@ enum { ENDS = FU_SPAN_ENDS, LOCAL = FU_SPAN_LOCAL };
 
 /* --- inertia ---------------------------------------------------------------------------------------------------- */
 
-static void inertial_force(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a,
-                           double *f)
+static void inertial_force(const fu_model *model, const fu_coupling *coupling, double t, const double *q,
+                           const double *a, double *f)
 {
+    (void)t;
     const fu_span_coupling *span = fu_span_of(coupling);
     double of_e[FU_MAX_COORDINATES], of_ends[ENDS];
     for (int k = 0; k < span->on.n_elements; ++k) {
@@ -21,9 +22,10 @@ static void inertial_force(const fu_model *model, const fu_coupling *coupling, c
     }
 }
 
-static void mass_matrix(const fu_model *model, const fu_coupling *coupling, const double *q, double scale,
+static void mass_matrix(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double scale,
                         fu_system *system)
 {
+    (void)t;
     const fu_span_coupling *span = fu_span_of(coupling);
     const int n = span->on.kernel->coordinates, all = n + ENDS;
     double M[LOCAL * LOCAL], local[LOCAL][LOCAL];

@@ -8,9 +8,10 @@
 #include <math.h>
 #include <string.h>
 
-static void inertial_force(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a,
-                           double *f)
+static void inertial_force(const fu_model *model, const fu_coupling *coupling, double t, const double *q,
+                           const double *a, double *f)
 {
+    (void)t;
     const fu_sheave *sheave = sheave_of(coupling);
     const fu_state state = {.q = (double *)q, .v = (double *)model->zero};
     fu_sheave_state at;
@@ -20,9 +21,10 @@ static void inertial_force(const fu_model *model, const fu_coupling *coupling, c
     fu_sheave_scatter(sheave, &at, y, f);
 }
 
-static void mass_matrix(const fu_model *model, const fu_coupling *coupling, const double *q, double scale,
+static void mass_matrix(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double scale,
                         fu_system *system)
 {
+    (void)t;
     const fu_sheave *sheave = sheave_of(coupling);
     const fu_state state = {.q = (double *)q, .v = (double *)model->zero};
     double K[Y][Y];

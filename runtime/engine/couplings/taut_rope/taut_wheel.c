@@ -47,9 +47,10 @@ double fu_taut_spinning_up(const fu_model *model, const fu_taut_point *point, co
     return of.bias + spinning_up(point, &of, a);
 }
 
-static void inertial_force(const fu_model *model, const fu_coupling *coupling, const double *q, const double *a,
-                           double *f)
+static void inertial_force(const fu_model *model, const fu_coupling *coupling, double t, const double *q,
+                           const double *a, double *f)
 {
+    (void)t;
     const fu_taut_point *point = (const fu_taut_point *)coupling;
     const fu_state state = {.q = (double *)q};
     spinning of;
@@ -59,9 +60,10 @@ static void inertial_force(const fu_model *model, const fu_coupling *coupling, c
     for (int i = 0; i < of.centre.n; ++i) f[of.centre.at[i]] += of.share[i] * moment;
 }
 
-static void mass_matrix(const fu_model *model, const fu_coupling *coupling, const double *q, double scale,
+static void mass_matrix(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double scale,
                         fu_system *system)
 {
+    (void)t;
     const fu_taut_point *point = (const fu_taut_point *)coupling;
     const fu_state state = {.q = (double *)q};
     const double mass = scale * point->inertia;
