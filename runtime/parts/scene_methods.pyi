@@ -7,7 +7,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from .branch import Relaxation
+from .branch import Relaxation, WireFriction
 from .cable import Cable
 from .contact import Contact
 from .crossing import Crossing
@@ -38,6 +38,7 @@ from .spring import Spring
 from .support import Clamp, Motion, Pin, Tie
 from .surface import Surface
 from .velocity_table import VelocityTable
+from .wave import Wave
 
 Numbers: TypeAlias = Sequence[float] | np.ndarray
 Points: TypeAlias = Sequence[Numbers] | np.ndarray
@@ -292,6 +293,8 @@ class SceneMethods(SceneData):
         scale: Scale = 1.0,
         profile: Profile | None = None,
         table: VelocityTable | dict[str, Any] | None = None,
+        waves: Sequence[Wave | dict[str, Any]] | None = None,
+        depth: float | None = None,
     ) -> Fluid:
         """Add a Fluid, which see."""
 
@@ -331,6 +334,16 @@ class SceneMethods(SceneData):
         name: str | None = None,
     ) -> Relaxation:
         """Add a Relaxation, which see."""
+
+    def wire_friction(
+        self,
+        cable: Named,
+        *,
+        stiffness: float,
+        moment: float,
+        name: str | None = None,
+    ) -> WireFriction:
+        """Add a WireFriction, which see."""
 
     def crossing(
         self,
