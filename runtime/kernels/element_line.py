@@ -34,8 +34,9 @@ class ElementLine:
     def _element_at(self, s: float) -> tuple[float, float, np.ndarray]:
         """Return the length of the element at ``s`` and x in it, m, and its nodal vectors (2 vectors, dim)."""
         element = int(self.mesh.element_at(s))
+        first = int(self.mesh.first_node(element))
         return (self.mesh.length(element), s - self.mesh.start(element),
-                np.concatenate(self.nodal_vectors[element : element + 2]))
+                np.concatenate(self.nodal_vectors[first : first + 2]))
 
     def _kernel(self, name: str) -> Callable[..., Any]:
         kernel: Callable[..., Any] = getattr(kernels_of(self.library), f"{self.element}_{name}")

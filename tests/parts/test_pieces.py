@@ -98,6 +98,21 @@ def test_a_slide_passes_a_joint(element, integrator):
     assert run["A.velocity"][-1, 0] == pytest.approx(20, rel=2e-3)
 
 
+@pytest.mark.parametrize("element", ["cable8p", "beam12p", "cable12"])
+def test_places_beyond_a_joint_are_those_of_the_drawing(element):
+    """Parts that are placed on a bent cable beyond two nodes of one place lie on it."""
+    def bent(stiff):
+        scene = fu.Scene()
+        return scene.cable("rope", points=[(0, 0, 0), (0.5, -0.1, 0), (1, 0, 0)], rest="straight", element=element,
+                           up=(0, 1, 0), pieces=[fu.Piece(length=0.4, section=SECTION, material=SOFT, elements=2),
+                                                 fu.Piece(length=0.6, section=SECTION, material=stiff, elements=3)])
+    unlike, alike = bent(STIFF), bent(SOFT)
+    assert len(unlike.nodal_vectors) == len(alike.nodal_vectors) + 1
+    for s in (0.1, 0.4, 0.45, 0.6, 0.9, 1.0):
+        np.testing.assert_allclose(unlike.point(s), alike.point(s), atol=1e-12)
+        np.testing.assert_allclose(unlike.slope(s), alike.slope(s), atol=1e-12)
+
+
 @pytest.mark.parametrize("integrator", ["genalpha", "radau", "explicit"])
 def test_a_joint_passes_the_direction_up(integrator):
     """A cable in space of unlike pieces swings through the vertical, whatever `up` its axes were drawn with."""
