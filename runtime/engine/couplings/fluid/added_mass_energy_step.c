@@ -178,8 +178,8 @@ static void on_cable_in_step(const fu_model *model, const fu_drag *drag, const f
     }
 }
 
-/* A point of a body, or of a cable, which does not turn, at both ends of a step and half-way, and its motion relative to
- * the fluid there; theta: Cayley vector of the rotation. */
+/* A point of a body, or of a cable, which does not turn, at both ends of a step and half-way, and its motion relative
+ * to the fluid there; theta: Cayley vector of the rotation. */
 typedef struct {
     fu_attachment_state ends[2], turning;
     relative_motion motion[2], halfway;
