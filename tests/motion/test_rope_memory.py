@@ -258,6 +258,12 @@ def test_runs_with_friction_resume_bit_for_bit(integrator, tmp_path):
     check_file_and_resume(swinging(), tmp_path, 12, duration=0.4, output_step=0.02, tol=1e-3, integrator=integrator)
 
 
+def test_the_linear_model_has_no_slider():
+    with refused('wire_friction "wires": integrator "linear" does not support friction between wires; '
+                 "leave it out, or take another integrator"):
+        swinging("cable8p").run(0.1, output_step=0.05, integrator="linear")
+
+
 def test_a_turned_rope_has_turned_moments():
     """A scene that is turned about y by a quarter: the elastic part of the curvature turns with the tangent."""
     how = {"output_step": 0.1, "step": 1e-3, "integrator": "genalpha"}

@@ -124,6 +124,10 @@ def refuse_what_is_not_linear(scene: SceneData, model: Model) -> None:
         if slide.friction is not None or any(isinstance(end, Stop) for end in (slide.at_start, slide.at_end)):
             raise SceneError(slide.where, f"{who} does not support friction of slides and stops",
                              f"leave them out, or {remedy}")
+    for branch in scene.branches.values():
+        if branch.limit:
+            raise SceneError(branch.where, f"{who} does not support friction between wires",
+                             f"leave it out, or {remedy}")
     for joint in scene.joints.values():
         if joint.friction is not None:
             raise SceneError(joint.where, f"{who} does not support friction of joints", f"leave it out, or {remedy}")
