@@ -38,8 +38,7 @@ print(f"tension {1e-3 * float(tension.min()):.0f} to {1e-3 * float(tension.max()
       f"the car hangs {scene.bodies['cabin'].position[1] - rest['cabin.position'][1]:.2f} m lower than drawn")
 
 # %%
-# The tension is equal on both sides of a frictionless saddle. A rope clamped to the support differs: with the car in
-# the lower span its tension would be 242 kN below the support and 200 kN above.
+# The tension is equal on both sides of the saddle.
 
 saddle = float(rest["saddle.s"])
 below, above = 1e-3 * rest.section_forces("track", s=[saddle - 8, saddle + 8]).tension.values
@@ -103,5 +102,4 @@ worst = forces.tension.max(dim="time")
 print(f"largest tension {1e-3 * float(worst.max()):.0f} kN = {1e-6 * float(worst.max()) / 1.1e-3:.0f} MPa of the metal")
 
 # %%
-# Next steps: ``scene.replace("cabin", mass=2500)`` makes the cabin heavier. A load across the plane needs a spatial
-# element, ``cable12``.
+# Next step: ``scene.replace("cabin", mass=2500)`` makes the cabin heavier.

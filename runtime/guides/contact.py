@@ -71,7 +71,7 @@ assert np.abs(stiff["line.position"][-1] - end).max() < 5e-4
 #
 # In statics, friction acts against the displacement of each point from where it is drawn. This line is drawn without
 # its stretch. It stretches away from the anchor, and friction reduces the force there by the coefficient times the
-# weight on the bed. The installed scene ``rope_over_drum`` is another example. Ropes have friction in runs alone.
+# weight on the bed. Ropes have friction in runs alone.
 
 rough = mooring(friction=0.3)
 print(f"{-rough['line@0.force'][0]:.1f} N at the anchor, {-rough['lying.friction_force'][0]:.1f} N by friction")

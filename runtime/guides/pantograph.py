@@ -46,12 +46,9 @@ assert abs(form.tensions[0] / 191.35 - 1) < 0.02
 # -----------
 #
 # The pantograph is a chain of three masses over a base that the train moves: collector, upper and lower frame. The
-# uplift force acts on the lowest mass. Waves in the contact wire travel at 460 km/h. ``catenary.JointedPantograph`` has
-# arms and rods with hinges.
+# uplift force acts on the lowest mass. ``catenary.JointedPantograph`` has arms and rods with hinges.
 #
-# The default elements have 1 m; steps converge the standard deviation of the contact force to 1 % in time. A correction
-# replaces the local deflection that coarse elements omit below droppers and collector. The elements here are longer, to
-# save time.
+# The default elements have 1 m; the elements here are longer, to save time.
 
 pantograph = catenary.Pantograph(masses=[7.5, 9, 6], stiffness=[7000, 15500, 160], damping=[45, 0.1, 100], uplift=120)
 print(f"waves run at {3.6 * line.contact.wave_speed:.0f} km/h")

@@ -103,7 +103,7 @@ for axis, name in zip(axes, uncertain, strict=True):
 axes[0].set(ylabel="sag in mm")
 
 # %%
-# The weight of the cable matters most, then the speed of the trolley, whose mass is a twelfth of the cable's.
+# The weight matters most.
 
 assert np.corrcoef(samples["wire.material.density"], samples.sag)[0, 1] > 0.8
 assert np.corrcoef(samples["A.velocity.x"], samples.sag)[0, 1] < -0.3

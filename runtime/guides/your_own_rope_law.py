@@ -2,17 +2,15 @@
 A rope's own law, against a test machine's curve
 ================================================
 
-Ropes of fibres do not stretch in proportion to their tension. The guide turns the curve of a test machine into the law
-of a cable, tests it on the same machine in funicular, and shows what a constant stiffness would get wrong. The curve is
-made up here, with noise, in the place of a file.
+Ropes of fibres do not stretch in proportion to their tension. The curve of a test machine becomes the law of a cable.
+Here the curve is made up, with noise.
 """
 
 # %%
 # The curve of the machine
 # ------------------------
 #
-# A specimen of 5 m of polyester, 60 mm thick, is pulled to 600 kN. Bedded in, it becomes stiffer with tension. The
-# machine writes extensions and forces, with an error of 0.5 kN.
+# A specimen of 5 m of polyester becomes stiffer with tension. The error of the forces is 0.5 kN.
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -35,10 +33,8 @@ measured = true_force(extension / SPECIMEN) + random.normal(scale=500.0, size=20
 # From the curve to a table
 # -------------------------
 #
-# ``fu.TensionTable`` takes up to 20 points: strain, and a force that increases from 0 at strain 0. A least-squares fit
-# through the origin leaves the noise out; points of the fit make the table. Between its points the force is a cubic
-# that increases, so that the tangent stiffness is nowhere negative; beyond them it is straight. A table that begins at
-# zero strain pulls alone: a slack rope does not push.
+# ``fu.TensionTable`` takes up to 20 points, here of a least-squares fit through the origin. Between them the force is
+# a cubic that increases, beyond them it is straight. A table from zero strain on pulls alone.
 
 strain = extension / SPECIMEN
 powers = np.stack([strain**k for k in (1, 2, 3)], axis=1)
@@ -50,8 +46,7 @@ table = fu.TensionTable(strain=points, force=np.stack([points**k for k in (1, 2,
 # The same test in funicular
 # --------------------------
 #
-# The law is ``membrane="tabulated"`` of cable elements, the table belongs to the section. The Young's modulus of the
-# material gives bending and damping alone. A crosshead pulls slowly, and the law must return the measured force.
+# The table belongs to the section. Young's modulus gives bending and damping alone.
 
 AREA = np.pi * 0.03**2
 section = fu.GeneralSection(area=AREA, second_moment_about_z=0.0, tension_table=table)
@@ -82,9 +77,7 @@ assert residual.std() < 1000.0
 # What a constant stiffness gets wrong
 # ------------------------------------
 #
-# A mooring line of 400 m hangs between points at the same height. A stiffness that is right at the end of the curve
-# makes it too stiff at its mean tension, in which it sways with the waves: the force of a small motion of its end is
-# wrong by the ratio of the slopes.
+# A stiffness that is right at the end of the curve is wrong at the mean tension of a line of 400 m.
 
 SPAN, LINE = 410.0, 400.0
 
@@ -112,8 +105,7 @@ assert by_secant[0] > 1.1 * by_table[0]
 # Frequencies about the mean tension
 # ----------------------------------
 #
-# Modes take the slope of the table at the state of rest. Those of a taut specimen along its axis are waves of the speed
-# √(N'/ρA).
+# Modes take the slope of the table at the state of rest: waves along the rope have the speed √(N'/ρA).
 
 taut = 0.03
 test = fu.Scene(gravity=(0, 0, 0))

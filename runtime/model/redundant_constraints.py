@@ -65,9 +65,9 @@ def _check_friction(model: Model, follows: dict[int, list[int]], owner: list[str
 
 
 def _has_force(model: Model, multiplier: int) -> bool:
-    """Return whether a multiplier is a force on the points of a joint, and not a moment alone."""
-    joint = next(each for each in model.joints if 0 <= multiplier - each.multiplier < each.rows)
-    return joint.moves_points(model.dim)[multiplier - joint.multiplier]
+    """Return whether a multiplier is a force on points, of a slide or of a joint, and not a moment alone."""
+    joint = next((each for each in model.joints if 0 <= multiplier - each.multiplier < each.rows), None)
+    return joint is None or joint.moves_points(model.dim)[multiplier - joint.multiplier]
 
 
 def _message(joint: JointModel, follows: dict[int, list[int]], owner: list[str]) -> str:

@@ -297,6 +297,8 @@ CEILINGS = {
         "stored_force_tangent": 268, "share": 11, "point_tangent": 188, "motion": 364, "kinetic_force": 415,
         "kinetic_force_tangent": 6988
     },
+    "planar_branch": {"measures": 14, "force": 44, "tangent": 260, "hold": 12, "slide": 32},
+    "branch": {"measures": 49, "force": 287, "tangent": 2750, "hold": 24, "slide": 70},
     "planar_rope_point": {"point": 357, "wrench": 776, "discrete_point": 392, "slope": 294, "slope_stiffness": 519},
     "rope_point": {"point": 402, "wrench": 844, "discrete_point": 297, "slope": 341, "slope_stiffness": 607},
     "planar_taut_rope": {

@@ -39,6 +39,7 @@ def everything() -> fu.Scene:
     scene.spring(("n-rope", 1.0), ("n-bar", (0.5, 0, 0)), stiffness=1.0, name="n-spring")
     scene.fluid(density=1.2, name="n-air")
     scene.drag("n-rope", normal=1.0, name="n-drag")
+    scene.point_mass("n-rope", s=0.5, mass=0.1, name="n-clump")
     scene.relaxation("n-rope", stiffness=1e3, time=0.5, name="n-relaxation")
     scene.wire_friction("n-rope", stiffness=0.5, moment=0.1, name="n-wires")
     scene.crossing("n-rope", "n-beam", stiffness=1e3, name="n-crossing")
@@ -107,7 +108,8 @@ def test_a_part_goes_with_what_hangs_on_it(make, number):
 def test_by_name_and_several_at_once():
     scene = everything()
     assert scene.without("n-force", "n-moment").loads.keys() == {"n-side"}
-    assert scene.without("n-rope").messages[-1].startswith('without cable "n-rope", pin on "n-rope", tie "n-tie", ')
+    messages = scene.without("n-rope").messages
+    assert messages[-1].startswith('without cable "n-rope", point_mass "n-clump", pin on "n-rope", tie "n-tie", ')
     assert "n-hook" in scene.without("n-body").bodies and "n-slide" not in scene.without("n-body").slides
     assert scene.without().to_toml() == scene.to_toml()
     with refused('scene: there is no part "n-ropes"; did you mean "n-rope"?'):

@@ -16,7 +16,7 @@ def stiffness(name: str, law: str) -> np.ndarray:
     """Return S of a square section of a material with Young's modulus E and no lateral contraction."""
     if law == "structural":
         EA, GA, EI = E * SIDE**2, E * SIDE**2 / 2, E * SIDE**4 / 12
-        return np.array([EA, GA, GA, EI, EI, EI, EA, EA, GA] if ELEMENTS[name].dim == 3 else [EA, GA, EI, EA])
+        return np.array([EA, GA, GA, EI, EI, EI, EA, EA, GA, 0.0] if ELEMENTS[name].dim == 3 else [EA, GA, EI, EA])
     if law.startswith("continuum"):
         dim = ELEMENTS[name].dim
         pairs = dim * (dim - 1) // 2

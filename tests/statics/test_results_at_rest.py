@@ -16,7 +16,7 @@ def rope(scene, name, y, element="cable12", **given):
 
 
 def of_supports() -> Scene:
-    """Return a scene with a clamp, a motion, a pin, a tie, a joint, a spring, a drag."""
+    """Return a scene with a clamp, a motion, a pin, a tie, a joint, a spring, a drag, memory of a rope."""
     scene = Scene()
     rope(scene, "beam", 1.0, "beam24")
     scene.clamp("beam", s=0)
@@ -30,6 +30,8 @@ def of_supports() -> Scene:
     scene.spring("A", (1, 2, 0.2), stiffness=5.0, length=0.9, name="string")
     scene.fluid("air", density=1.2, velocity=(3, 0, 0))
     scene.drag("line", normal=1.0, name="wind")
+    scene.relaxation("link", stiffness=50.0, time=0.1, name="viscosity")
+    scene.wire_friction("link", stiffness=0.01, moment=1e-4, name="wires")
     return scene
 
 
