@@ -88,7 +88,8 @@ def trajectory(scene: SceneData, run: Run, name: str) -> np.ndarray:
     mesh = scene.cables[cable].mesh
     element = int(mesh.element_at(s * (1 + 1e-12)))
     N = on_axis(scene.cables[cable], element, s - mesh.start(element))[0]
-    vectors = run[f"{cable}.nodal_vectors"][:, element : element + 2]
+    first = int(mesh.first_node(element))
+    vectors = run[f"{cable}.nodal_vectors"][:, first : first + 2]
     return np.asarray(np.einsum("k,tkd->td", N, vectors.reshape(len(vectors), len(N), 3)))
 
 

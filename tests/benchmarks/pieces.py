@@ -149,7 +149,7 @@ def bead(element: str, elements: int) -> tuple[np.ndarray, np.ndarray]:
     material = fu.Material(youngs_modulus=1e9, poisson_ratio=0.3, density=1000)
     length = span / (1 + stretch)
     scene.cable("string", start=(0, 0, 0), end=(span, 0, 0), element=element, strain="engineering", pieces=[
-        fu.Piece(length=length / 2, elements=elements // 2, material=material, hinge=hinge,
+        fu.Piece(length=length / 2, elements=elements // 2 or 1, material=material, hinge=hinge,
                  section=fu.GeneralSection(area=area, second_moment_about_z=0.0)) for hinge in (False, True)])
     for s in (0, length):
         scene.pin("string", s=s)

@@ -111,9 +111,11 @@ def reordered(scene: fu.Scene) -> Route | None:
 
 def moving(rotation: Triple = (0.0, 0.0, 0.0), up: float = 0.0, aside: float = 0.0) -> Maker:
     """Return the route of a scene rotated by a vector in rad and moved in m, up and across the plane of x and gravity.
-    A fluid that changes with height is not moved up.
+    A fluid that changes with height is not moved up, one with waves, which have a phase at the origin, not at all.
     """
     def moved(scene: fu.Scene) -> Route | None:
+        if any(fluid.waves is not None for fluid in scene.fluids.values()):
+            return None
         if any(fluid.profile is not None or fluid.surface is not None for fluid in scene.fluids.values()) and up:
             return None
         shift = rotate(turned_by(np.array(rotation)), up * scene.up + aside * np.array([0.0, 0.0, 1.0]) + (1.0, 0, 0))
@@ -174,6 +176,11 @@ def _reversed(cable: Cable) -> Cable:
     """Return the reversed cable."""
     assert not any(cable.angular_velocity), "its velocity is of its first point"
     changes = {"points": cable.points[::-1]} if cable.points else {"start": cable.end, "end": cable.start}
+    if cable.pieces is not None:  # hinges are at their starts
+        assert cable.pieces[0].hinge is False
+        hinges = [False, *(piece.hinge for piece in cable.pieces[:0:-1])]
+        changes["pieces"] = [piece.remade({"hinge": hinge})
+                             for piece, hinge in zip(cable.pieces[::-1], hinges, strict=True)]
     if cable.nodes is not None:
         changes["nodes"] = (cable.length - np.array(cable.nodes[::-1])).tolist()
     return cable.remade(changes)

@@ -24,7 +24,8 @@ def free_to_vibrate(scene: fu.Scene) -> bool:
     """
     driven = any(joint.is_driven for joint in scene.joints.values()) or any(
         slide.is_driven or slide.friction is not None for slide in scene.slides.values())
-    return not (driven or scene.fluids or scene.motions or scene.contacts or scene.crossings)
+    grows = any(cable.growth.signal is not None for cable in scene.cables.values())
+    return not (driven or grows or scene.branches or scene.fluids or scene.motions or scene.contacts or scene.crossings)
 
 
 def undamped(scene: fu.Scene) -> fu.Scene:
@@ -33,8 +34,11 @@ def undamped(scene: fu.Scene) -> fu.Scene:
 
 
 def _undamped(part: Part) -> Part:
+    still = {"damping_time": 0.0, "mass_damping": 0.0}
+    if isinstance(part, Cable) and part.pieces is not None:
+        return part.remade({"pieces": [each.remade({"material": each.material.remade(still)}) for each in part.pieces]})
     if isinstance(part, Cable):
-        return part.remade({"material": part.material.remade({"damping_time": 0.0, "mass_damping": 0.0})})
+        return part.remade({"material": part.material.remade(still)})
     return part.remade({"damping": 0.0}) if isinstance(part, PointForce) else part.as_made()
 
 
@@ -49,7 +53,13 @@ def lowest_modes(scene: fu.Scene, rest: Equilibrium, n: int) -> Modes:
 
 
 def displaced(scene: fu.Scene, rest: Equilibrium, modes: Modes, mode: int, size: float) -> dict[str, np.ndarray]:
-    """Return the state at rest displaced by a mode of a given largest displacement in m, without velocities."""
+    """Return the state at rest displaced by a mode of a given largest displacement in m, without velocities.
+
+    A slope counts with a tenth of the length of its cable: a mode may have all nodes of the mesh among its own.
+    """
+    slopes = [np.linalg.norm(modes[f"{name}.nodal_vectors"][mode][:, 1:], axis=-1).max() * cable.length / 10
+              for name, cable in scene.cables.items() if f"{name}.nodal_vectors" in modes.keys()]
+    size = size / max([1.0, *slopes])
     state = {name: np.array(rest[name]) for name in rest.keys() if name.endswith(STATE)}
     for name in modes.keys():
         part, quantity = name.split(".")
