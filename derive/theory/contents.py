@@ -75,6 +75,8 @@ def chapter_of(family: Family) -> str:
         return CHAPTERS.get(family.role, f"couplings/{family.role}")
     assert family.traits is not None
     kind = family.traits.kind
+    if family.traits.membrane == "tabulated":
+        return f"laws/{kind}/tabulated"
     return f"laws/{kind}/{kind}{'_curved' if kind == 'continuum' and family.traits.takes_shape else ''}"
 
 
