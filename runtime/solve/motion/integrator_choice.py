@@ -54,7 +54,7 @@ motion."""
 LOW_ORDER_TOL_WITH_FRICTION = 4e-2
 """The same for slides with friction: at tighter tol the error of genalpha can be many times tol."""
 
-LOW_ORDER_TOL_FRACTION = 0.8
+LOW_ORDER_TOL_FRACTION = 0.7
 """Fraction of tol for the method of low order, whose error can exceed its tol (tests/benchmarks/choice.py)."""
 
 MAX_LOW_ORDER_COST_RATIO = 4.0
