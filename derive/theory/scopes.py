@@ -364,12 +364,7 @@ def resistance_scope(name: str) -> Scope:
 
 def branch_scope(name: str) -> Scope:
     """Return the scope of branches beside the law of a cable."""
-    letters = (r"\mathbf{i}_{0}", "i_0"), (r"\mathbf{a}", "a"), (r"\mathbf{b}", "b"), (r"\mathbf{n}", "n"), (
-        r"\mathbf{m}_{1}", "m"), (r"\mathbf{m}_{0}", "m_0"), (r"\mathbf{d}_{0}", "d_0")
-    return Scope(families()[name], (*(Symbol(latex, argument, column) for latex, argument in letters),
-                                    Symbol(r"\mathbf{D}", "D", matrix), Symbol("k", "k", entry(0)),
-                                    Symbol(r"\delta", "decay", number), Symbol(r"\sigma", "share", number),
-                                    Symbol(r"\lambda", "limit", number)))
+    return Scope(families()[name], tuple(Symbol(rf"\mathbf{{{letter}}}", letter, column) for letter in "abn"))
 
 
 def drag_scope(name: str) -> Scope:

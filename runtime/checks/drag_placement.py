@@ -86,8 +86,7 @@ def _check_waves(scene: SceneData, fluid: Fluid) -> None:
         length, height = 2 * np.pi / k, 2 * wave.amplitude
         who = (f"the wave of {show(wave.period, 's')} has the height {show(height, 'm')} and the length "
                f"{show(length, 'm')}")
-        ahead = np.array(wave.direction) / np.linalg.norm(wave.direction)
-        if abs(ahead @ scene.up) > 1e-9:
+        if abs(wave.ahead @ scene.up) > 1e-9:
             raise SceneError(fluid.where, f"a wave runs along {show(wave.direction)}, which is not level",
                              "give a direction square to gravity")
         limit = MAX_STEEPNESS * (1.0 if fluid.depth is None else float(np.tanh(k * fluid.depth)))

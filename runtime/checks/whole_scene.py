@@ -12,7 +12,6 @@ from ..kernels.elements import built_in
 from ..parts.cable import Cable
 from ..parts.friction import Friction
 from ..parts.in_plane import turned_alone
-from ..parts.joint import Joint
 from ..parts.load import Load
 from ..parts.modal_body import ModalBody
 from ..parts.part import Part
@@ -20,7 +19,6 @@ from ..parts.plane import aligned, called
 from ..parts.rope import Rope
 from ..parts.scene_data import SceneData
 from ..parts.signal import Signal, signals_of
-from ..parts.slide import Slide
 from ..parts.validation import LENGTH_TOLERANCE, show
 from .joint_placement import check_drive, check_joint
 from .placement import check_grips
@@ -73,8 +71,7 @@ def check_scene(scene: SceneData) -> None:
 def _check_events(scene: SceneData) -> None:
     """Raise SceneError for loads and friction that begin or end with an event which is not there, or ends the run."""
     waiting: list[tuple[str, Load | Friction]] = [(load.where, load) for load in scene.loads.values()]
-    rubbing: list[Slide | Joint] = [*scene.slides.values(), *scene.joints.values()]
-    waiting += [(part.where, part.friction) for part in rubbing if part.friction is not None]
+    waiting += [(part.where, part.friction) for part in scene.rubbing if part.friction is not None]
     for where, part in waiting:
         for keyword, name in (("when", part.when), ("until", part.until)):
             if name is not None and name not in scene.events:

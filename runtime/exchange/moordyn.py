@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..base.deferred import dataclass
+from ..base.rotations import product, rotate, turned_by
 from ..errors import SceneError
 from ..parts.material import Material
 from ..parts.section import GeneralSection
@@ -23,9 +24,10 @@ SYNONYMS = {"gravity": "g", "rho": "rhow", "wtrdens": "rhow", "wtrdnsty": "rhow"
             "depth": "wtrdpth", "wdepth": "wtrdpth", "frictioncoeff": "frictioncoefficient"}
 ENVIRONMENT = {"wavekin": "waves", "currents": "currents"}
 """Options of what is left out unless they are 0."""
-HELD, MOVED, FREE = ("FIXED", "FIX", "ANCHOR"), ("COUPLED", "CPLD", "VESSEL", "VES", "FAIRLEAD"), (
-    "FREE", "POINT", "CONNECT", "CON")
-"""Words of the attachment of a point: held, moved by the host program, or free."""
+ATTACHMENTS = (dict.fromkeys(("FIXED", "FIX", "ANCHOR"), "held")
+               | dict.fromkeys(("COUPLED", "CPLD", "VESSEL", "VES", "FAIRLEAD"), "moved")
+               | dict.fromkeys(("FREE", "POINT", "CONNECT", "CON"), "free"))
+"""How a point or a body is held, by the words of its attachment: held, moved by the host program, or free."""
 NO_DIAMETER = 1e-3
 """m: of the section of a line whose diameter is 0, without buoyancy; its stiffness EA and mass stay."""
 DURATION = 60.0
@@ -101,15 +103,14 @@ class Point:
         at = 10 if len(row.words) >= 12 else 7
         force = tuple(row.number(k, "F") for k in (7, 8, 9)) if at == 10 else (0.0, 0.0, 0.0)
         drag, added = row.number(at, "CdA", 0.0), row.number(at + 1, "Ca", 0.0)
-        kinds = {word: how for words, how in ((HELD, "held"), (MOVED, "moved"), (FREE, "free")) for word in words}
         body = word.removeprefix("BODY") if word.startswith("BODY") else None
         if body is not None:
             of = named(bodies, body, row, "body")
             return cls(row, of.how, of.place + of.axes @ place, body if of.how == "free" else None, M, V, drag, added,
                        force)
-        if word not in kinds:
+        if word not in ATTACHMENTS:
             raise row.refused(f"the attachment {shown(row.words[1])} is not read", "known: Fixed, Coupled, Free, Body#")
-        return cls(row, kinds[word], place, None, M, V, drag, added, force)
+        return cls(row, ATTACHMENTS[word], place, None, M, V, drag, added, force)
 
 
 @dataclass(frozen=True)
@@ -125,17 +126,15 @@ class Body:
     def of(cls, row: Row) -> Body:
         """Return the body of a line of the table. Raises SceneError."""
         word = row.word(1, "Attachment").upper()
-        kinds = {word: how for words, how in ((HELD, "held"), (MOVED, "moved"), (FREE, "free")) for word in words}
-        if word not in kinds:
+        if word not in ATTACHMENTS:
             raise row.refused(f"the attachment {shown(row.words[1])} is not read", "known: Fixed, Coupled, Free")
         place = np.array([row.number(k, ("X0", "Y0", "Z0")[k - 2]) for k in (2, 3, 4)])
         roll, pitch, yaw = (math.radians(row.number(k, ("r0", "p0", "y0")[k - 5])) for k in (5, 6, 7))
-        if kinds[word] == "free" and (roll or pitch or yaw):
+        if ATTACHMENTS[word] == "free" and (roll or pitch or yaw):
             raise row.refused("a free body that begins turned is not read", "draw it with its axes along the ground's")
-        (a, b), (c, d), (e, f) = ((math.cos(angle), math.sin(angle)) for angle in (roll, pitch, yaw))
-        turns = np.array([[1, 0, 0], [0, a, -b], [0, b, a]]), np.array([[c, 0, d], [0, 1, 0], [-d, 0, c]]), np.array(
-            [[e, -f, 0], [f, e, 0], [0, 0, 1]])
-        return cls(row, kinds[word], place, turns[0] @ turns[1] @ turns[2])
+        about_x, about_y, about_z = map(turned_by, np.diag([roll, pitch, yaw]))
+        axes = rotate(product(product(about_x, about_y), about_z), np.eye(3)).T
+        return cls(row, ATTACHMENTS[word], place, axes)
 
 
 class _Reader:
@@ -246,9 +245,8 @@ class _Reader:
                                       "pin give a motion, as the program does that moves it")
             else:
                 self._join(name, point, ends)
-            if point.how != "free" or point.body is not None:
-                if point.mass or point.volume or point.drag:
-                    self.notes.append(f"{point.row.where}: M, V and CdA of a point that is not free are left out")
+            if (point.how != "free" or point.body is not None) and (point.mass or point.volume or point.drag):
+                self.notes.append(f"{point.row.where}: M, V and CdA of a point that is not free are left out")
 
     def _join(self, name: str, point: Point, ends: list[tuple[str, float]]) -> None:
         (cable, s), *others = ends

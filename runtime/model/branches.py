@@ -44,7 +44,7 @@ def branch_models(builder: ModelBuilder) -> Iterator[BranchModel]:
         number, dim = builder.cable_index[part.cable], builder.scene.dim
         cable = builder.cables[number]
         n_curvature = 1 if dim == 2 else 3
-        stiffness = part.spring * np.array([not part.bends, *[part.bends] * n_curvature], dtype=float)
+        stiffness = part.stiffness * np.array([not part.bends, *[part.bends] * n_curvature], dtype=float)
         for element in range(cable.n_elements):
             length = cable.mesh.length(element)
             shapes = np.array([cable.kernel("slopes")(length, length * (1 + x) / 2)[0] for x in GAUSS[0]])

@@ -197,8 +197,7 @@ def _waves(fluid: Fluid, scene: SceneData, up: np.ndarray) -> dict[str, Any]:
     own = next((each for each in scene.fluids.values() if each.waves is not None and each.top <= fluid.top), fluid)
     waves, gravity = own.waves or (), float(np.linalg.norm(scene.gravity))
     k = own.wave_numbers(gravity)
-    vectors = np.array([wave.direction for wave in waves]).reshape(-1, 3)
-    vectors = k[:, None] * vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+    vectors = k[:, None] * np.array([wave.ahead for wave in waves]).reshape(-1, 3)
     decay = np.zeros(len(k)) if own.depth is None else np.exp(-2 * k * own.depth)
     numbers = [[wave.amplitude, wave.frequency, wave.phase, *each] for wave, *each in zip(waves, k, decay, strict=True)]
     return {"n_waves": len(waves), "move_fluid": bool(waves) and own is fluid,

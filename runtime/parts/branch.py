@@ -1,6 +1,6 @@
 """Branches beside the elastic law of a cable, which give it memory: viscosity of a rope, friction between its wires."""
 
-from typing import Annotated, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from .part import Part
 from .quantity import Quantity
@@ -17,6 +17,8 @@ class Branch(Part):
     """Whether the spring acts on the curvature, and not on the strain."""
     name: Name | None = None
     cable: Reference
+    if TYPE_CHECKING:  # each has its own unit
+        stiffness: float
 
     @property
     def relaxation_time(self) -> float:
@@ -29,9 +31,9 @@ class Branch(Part):
         return 0.0
 
     @property
-    def spring(self) -> float:
-        """Return the stiffness of the spring, N or N m²."""
-        raise NotImplementedError
+    def stress(self) -> str:
+        """Return the name of the result that is the force or the moment of the spring."""
+        return f"{self.name}.{next(iter(self.results))}"
 
 
 class Relaxation(Branch):
@@ -59,11 +61,6 @@ class Relaxation(Branch):
     def relaxation_time(self) -> float:
         """Return the relaxation time in s."""
         return self.time
-
-    @property
-    def spring(self) -> float:
-        """Return the stiffness of the spring in N."""
-        return self.stiffness
 
 
 class WireFriction(Branch):
@@ -97,8 +94,3 @@ class WireFriction(Branch):
     def limit(self) -> float:
         """Return the moment in N m at which the wires slide."""
         return self.moment
-
-    @property
-    def spring(self) -> float:
-        """Return the stiffness of the spring in N m²."""
-        return self.stiffness

@@ -103,8 +103,7 @@ class Fluid(Part):
         """
         found = np.zeros(np.broadcast_shapes(np.shape(time), np.shape(place)[:-1]))
         for wave, k in zip(self.waves or (), self.wave_numbers(gravity), strict=True):
-            ahead = np.array(wave.direction) / np.linalg.norm(wave.direction)
-            theta = k * (place @ ahead) - wave.frequency * np.asarray(time) + wave.phase
+            theta = k * (place @ wave.ahead) - wave.frequency * np.asarray(time) + wave.phase
             found = found + wave.amplitude * np.cos(theta)
         return found
 

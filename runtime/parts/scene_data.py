@@ -185,6 +185,12 @@ class SceneData:
         return [mass for mass in self.point_masses.values() if mass.on == cable]
 
     @property
+    def rubbing(self) -> list[Slide | Joint]:
+        """Return the slides and the joints that have friction."""
+        every: list[Slide | Joint] = [*self.slides.values(), *self.joints.values()]
+        return [part for part in every if part.friction is not None]
+
+    @property
     def dim(self) -> int:
         """Return 2 if its cables or its ropes are planar, else 3."""
         planar = [cable for cable in self.cables.values() if cable.dim == 2]

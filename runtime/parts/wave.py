@@ -6,6 +6,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import BeforeValidator, Field
 
+from ..base.rotations import unit
 from .part import Part
 from .validation import Vector, direction, finite, items, positive, shown
 
@@ -39,6 +40,11 @@ class Wave(Part):
     def frequency(self) -> float:
         """Return its angular frequency, rad/s."""
         return 2 * math.pi / self.period
+
+    @property
+    def ahead(self) -> np.ndarray:
+        """Return the unit vector (3,) along its direction."""
+        return unit(np.array(self.direction))
 
     def wave_number(self, gravity: float, depth: float | None) -> float:
         """Return k of the dispersion relation omega² = g k tanh(k depth), 1/m; depth None: infinite."""

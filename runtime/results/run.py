@@ -232,8 +232,7 @@ class Run(Viewable, NamedArrays):
             raise UnknownResultError(f"the run has no row at t = {time:.9g} s; {there}")
         sticking = [part.given_name or "" for part in self.scene.parts() if getattr(part, "has_friction_spring", False)]
         springs = [name for name in sticking if np.any(self[f"{name}.friction_force"][row])]
-        springs += [name for name, branch in self.scene.branches.items()
-                    if np.any(self[f"{name}.{next(iter(branch.results))}"][row])]
+        springs += [name for name, branch in self.scene.branches.items() if np.any(self[branch.stress][row])]
         slips = {event["name"] for event in self.report["events"]
                  if event.get("what") == "slips" and event["time"] <= self.time[row]}
         holding = [sheave.name for part in self.scene.parts() for sheave in getattr(part, "holding_sheaves", ())]

@@ -52,8 +52,8 @@ NEUTRAL = {factor: levels if factor == "element" else levels[:1] for factor, lev
 NOT_ASKED = {
     "add", "add_pairs", "animation", "as_drawn", "attachments", "check", "events", "replaced", "start", "summary_rows",
     "changed", "check_name", "check_stable", "fluids_of", "copied", "dim", "drawn", "free_name", "free_names",
-    "from_toml", "group", "libraries", "masses_on", "part_named", "parts", "plane", "plane_axes", "put", "supports",
-    "touching", "with_parts",  # what the methods above are made of
+    "from_toml", "group", "libraries", "masses_on", "part_named", "parts", "plane", "plane_axes", "put", "rubbing",
+    "supports", "touching", "with_parts",  # what the methods above are made of
     "from_recording", "items", "line", "model", "of", "route_of", "sketch", "view",
     "adjustment", "check_adjusted", "check_fits", "check_supports", "heading", "neutral_directions", "relaxation",
     "rope_tensions", "stable", "unstable_directions", "about"}

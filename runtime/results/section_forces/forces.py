@@ -132,7 +132,7 @@ def _of_branches(scene: SceneData, at: Instants, cable: Cable, cuts: Cuts, tange
     place: np.ndarray = 2 * cuts.x / length - 1
     instants = np.arange(len(at.time))[:, None]
     for branch in (each for each in scene.branches.values() if each.cable == cable.name):
-        result = at.value(f"{branch.name}.{next(iter(branch.results))}")
+        result = at.value(branch.stress)
         result = result.reshape(len(at.time), cable.n_elements, 2, 3 if branch.bends else 1)
         ends = result[instants, cuts.element]
         first, second = ends[:, :, 0], ends[:, :, 1]

@@ -195,7 +195,7 @@ def end_with_low_order(demands: Demands, duration: float, method: Integrator, wh
 def demands_of(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> Demands:
     """Return the demands of a scene on an integrator."""
     frequency, decay = fastest_rates(model, engine)
-    rubbing: list[Slide | Joint] = [*scene.slides.values(), *scene.joints.values()]
+    rubbing = scene.rubbing
     decay = max(decay, *(regularised_decay(scene, part) for part in rubbing), 0.0)
     friction = any(part.friction is not None and part.friction.sliding for part in rubbing) or any(
         contact.is_hard and contact.friction_coefficient for contact in scene.contacts.values()) or any(

@@ -48,9 +48,8 @@ static void slopes_at(const fu_model *model, const fu_branch *branch, int k, con
 
 static void unit_tangent(int dim, const double *a, double *i)
 {
-    double square = 0.0;
-    for (int d = 0; d < dim; ++d) square += a[d] * a[d];
-    for (int d = 0; d < dim; ++d) i[d] = a[d] / sqrt(square);
+    const double size = sqrt(fu_dot(dim, a, a));
+    for (int d = 0; d < dim; ++d) i[d] = a[d] / size;
 }
 
 /* What a dashpot leaves of the elastic part over a time, and the share of a change of the measures in it. */
@@ -85,9 +84,7 @@ static void point_at(const fu_model *model, const fu_branch *branch, const fu_st
     const relaxation over = relaxation_over(branch, begun ? state->t - history->time : FU_NO_TIME);
     branch->kernel->measures(at->from.i, at->ab, at->ab + model->dim, at->m);
     branch->kernel->hold(at->m, at->from.m, at->from.d, branch->stiffness, over.decay, over.share, at->n, at->D);
-    double square = 0.0;
-    for (int i = 0; i < count; ++i) square += at->n[i] * at->n[i];
-    at->slides = branch->time == 0.0 && square > branch->limit * branch->limit;
+    at->slides = branch->time == 0.0 && fu_dot(count, at->n, at->n) > branch->limit * branch->limit;
     if (at->slides)
         branch->kernel->slide(at->m, at->from.m, at->from.d, branch->stiffness, branch->limit, at->n, at->D);
 }
@@ -294,12 +291,10 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     *numbers = (fu_branch_output){.tension = {0.0}};
     for (int k = 0; k < POINTS; ++k) {
         branch_point at;
-        double square = 0.0;
         point_at(model, branch, state, k, &at);
         numbers->tension[k] = at.n[0];
-        for (int i = 0; i < count; ++i) square += at.n[i] * at.n[i];
         for (int i = 1; i < count; ++i) numbers->moment[3 * k + 3 - count + i] = at.n[i];
-        numbers->sliding[k] = branch->time == 0.0 && sqrt(square) >= AT_LIMIT * branch->limit;
+        numbers->sliding[k] = branch->time == 0.0 && sqrt(fu_dot(count, at.n, at.n)) >= AT_LIMIT * branch->limit;
     }
 }
 
