@@ -44,10 +44,9 @@ def breakpoints(model: Model, duration: float, tol: float, turns: bool = True, n
     found = [each for number, signal in enumerate(model.signals)
              for each in _of_signal(signal, number in driving, number in inertial, tol)]
     if model.drags:
-        found += _of_tables(model)
+        found += _of_tables(model) + (_of_waves(model, duration) if turns else [])
     found += _of_moving_loads(model, duration, nodes)
     if turns:
-        found += _of_waves(model, duration)
         found += [each for signal in model.signals for each in _turns(signal.breaks, signal.coefficients[:, 0], tol)
                   if each[0] < (1 - INSTANT_TOLERANCE) * duration]
     found = [each for each in found if INSTANT_TOLERANCE < each[0] / duration < 1 + INSTANT_TOLERANCE]

@@ -134,7 +134,6 @@ def turn_to_clamps(scene: SceneData, nodal: list[np.ndarray]) -> None:
 
     nodal: (nodes, vectors, dim) of each cable as drawn, changed in place. Raises SceneError.
     """
-    numbers = {name: k for k, name in enumerate(scene.cables)}
     for clamp in scene.clamps:
         if clamp.direction is None:
             continue
@@ -143,8 +142,9 @@ def turn_to_clamps(scene: SceneData, nodal: list[np.ndarray]) -> None:
         if any(tie.rotation == "rigid" and (clamp.cable, node) in ends_of(scene, tie) for tie in scene.ties.values()):
             raise SceneError(clamp.where, "has a direction, and a rigid tie joins the node to another cable",
                              'give the tie rotation="free", or draw the cables along the direction')
+        own = nodal[list(scene.cables).index(clamp.cable)]
         for each in cable.mesh.at_node(node):
-            vectors = nodal[numbers[clamp.cable]][each]
+            vectors = own[each]
             tangent, turned = unit(vectors[names.index("r_x")]), np.array([name != "r" for name in names])
             mean = tangent + along
             turn = np.outer(2 * along, tangent) - np.outer(mean, mean) / (1 + tangent @ along)

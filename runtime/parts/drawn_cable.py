@@ -164,8 +164,10 @@ class DrawnCable(Fields):
     @property
     def gives_way(self) -> bool:
         """Return whether it resists hardly in compression."""
+        if self.traits.membrane != "tabulated":
+            return self.traits.membrane == "tension_only"
         tables = [piece.section.tension_table for piece in self.uniform_pieces]
-        return self.traits.membrane == "tension_only" or all(table is not None and table.only_pulls for table in tables)
+        return all(table is not None and table.only_pulls for table in tables)
 
     def in_plane(self, vectors: np.ndarray) -> np.ndarray:
         """Return directions (..., 3) along the ground's axes as (..., dim) along those of its plane."""

@@ -57,7 +57,7 @@ class _Strains:
         self.half_stiffness = 0.5 * self.EA * self.h
         self.supported = sorted(int(cable.mesh.boundary_of_node[self.part.node(each.s)])
                                 for each in scene.supports if each.cable == cable.name)
-        self.is_slack_in_compression = self.part.gives_way
+        self.is_slack_in_compression = cable.gives_way
         if self.part.is_curved:
             self.drawn = self._strain(self.part.rest_nodal_vectors[None])
         self.scene = scene

@@ -47,7 +47,7 @@ class Folds(Note):
         self._cables: list[tuple[CableModel, np.ndarray]] = []
         for cable in self.model.cables:
             part = self.scene.cables[cable.name]
-            if not part.gives_way:
+            if not cable.gives_way:
                 self._cables.append((cable, cable.mesh.all_lengths if not part.is_curved
                                      else chord_lengths(part.rest_nodal_vectors[None, :, cable.vectors.index("r")])[0]))
 

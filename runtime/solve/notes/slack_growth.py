@@ -42,8 +42,7 @@ class SlackMotion(Note):
 
     def prepare(self) -> None:
         """Select the cables that can become slack."""
-        self.cables = [cable for cable in self.model.cables
-                       if cable.gives_way]
+        self.cables = [cable for cable in self.model.cables if cable.gives_way]
 
     def see(self, rows: Rows) -> None:
         """Measure further output rows."""
