@@ -66,14 +66,16 @@ class TensionTable(Part):
 
     @property
     def compressive_stiffness(self) -> float:
-        """Return the slope of the force in compression in N: at strain 0, or what is left of it."""
+        """Return the axial stiffness in compression in N: the slope at the strain 0, or the residual stiffness."""
         strain, _, slopes = self._points()
         return float(slopes[0] if self.only_pulls else np.interp(0.0, strain, slopes))
 
     def _points(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return strain, force and slope where segments meet."""
+        from scipy.interpolate import PchipInterpolator  # slow to import
+
         x, N = np.array(self.strain), np.array(self.force)
-        slopes = monotone_slopes(x, N)
+        slopes = PchipInterpolator(x, N).derivative()(x)
         if not self.only_pulls:
             return x, N, slopes
         left = RESIDUAL_STIFFNESS * N[1] / x[1]
@@ -81,33 +83,17 @@ class TensionTable(Part):
         return np.array([-TRANSITION_STRAIN, *x]), np.array([below, *N]), np.array([left, *slopes])
 
     def numbers(self) -> np.ndarray:
-        """Return the numbers of its segments, as kernels take them (derive/algebra/piecewise.py)."""
+        """Return the numbers of its segments, as kernels take them (derive/codegen/piecewise.py)."""
+        from scipy.interpolate import CubicHermiteSpline  # slow to import
+
         x, N, slopes = self._points()
-        h, secants = np.diff(x), np.diff(N) / np.diff(x)
-        c2 = (3 * secants - 2 * slopes[:-1] - slopes[1:]) / h
-        c3 = (slopes[:-1] + slopes[1:] - 2 * secants) / h**2
-        energy = np.cumsum([0.0, *(h * (N[:-1] + h * (slopes[:-1] / 2 + h * (c2 / 3 + h * c3 / 4))))])
-        energy -= energy[np.flatnonzero(x == 0.0)[0]]
-        zero = np.zeros(len(x))
-        c2, c3 = np.array([0.0, *c2, 0.0]), np.array([0.0, *c3, 0.0])
-        segments = np.stack([np.append(of[0], of) for of in (x, energy, N, slopes, zero, zero)], axis=1)
-        segments[:, 4], segments[:, 5] = c2, c3
+        law = CubicHermiteSpline(x, N, slopes)
+        energy = law.antiderivative()
+        segments = np.zeros((len(x) + 1, 6))  # straight before the first point and beyond the last one
+        segments[1:, 0], segments[1:, 1] = x, energy(x) - energy(0.0)
+        segments[1:, 2], segments[1:, 3] = N, slopes
+        segments[0] = segments[1]
+        segments[1:-1, 4:] = law.c[1::-1].T
         found = np.zeros(1 + segments.shape[1] * part_of_manifest("max_segments"))
         found[0], found[1 : 1 + segments.size] = len(segments), segments.ravel()
         return found
-
-
-def monotone_slopes(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Return slopes at the points of an increasing function, with which its cubics increase."""
-    h, secants = np.diff(x), np.diff(y) / np.diff(x)
-    if len(h) == 1:
-        return np.array([secants[0]] * 2)
-    weights = np.stack([2 * h[1:] + h[:-1], h[1:] + 2 * h[:-1]])
-    within = weights.sum(axis=0) / (weights[0] / secants[:-1] + weights[1] / secants[1:])
-    return np.array([_end(h[0], h[1], secants[0], secants[1]), *within, _end(h[-1], h[-2], secants[-1], secants[-2])])
-
-
-def _end(h: float, beyond: float, secant: float, next_secant: float) -> float:
-    """Return the slope of the parabola through three points at the first one, from none to three times the secant."""
-    slope = ((2 * h + beyond) * secant - h * next_secant) / (h + beyond)
-    return float(min(max(slope, 0.0), 3 * secant))
