@@ -27,7 +27,7 @@ def placed_branch(scene: SceneData, part: Branch) -> Branch:
             f"acts on {' and '.join(ELEMENTS)}, but {cable.where} is of {cable.element}",
             "take one of these elements",
         )
-    if cable.kernel_law.endswith("tension_only"):
+    if cable.gives_way:
         raise SceneError(
             part.where,
             f"{cable.where} resists tension alone, and a branch would push",

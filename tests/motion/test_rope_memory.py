@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from expectations import refused
-from funicular import Circle, Material, Ramp, Scene
+from funicular import Circle, Material, Ramp, Scene, TensionTable
 from interrupted_runs import check_file_and_resume
 from rope_memory import (
     BEGIN,
@@ -162,9 +162,13 @@ def test_cables_that_a_branch_does_not_suit_are_refused():
     scene.cable("loose", **given, element="cable8p", membrane="tension_only")
     scene.cable("warm", **given, element="cable8p", temperature=20.0)
     scene.cable("changing", **given, element="cable8p", rest_length=Ramp(before=1.0, after=0.9, start=0, end=1))
-    with refused('relaxation "a": cable "loose" resists tension alone, and a branch would push; take the membrane '
-                 '"full" or "assumed"'):
-        scene.relaxation("loose", stiffness=1.0, time=1.0, name="a")
+    pulls = TensionTable(strain=[0, 0.01], force=[0, 1e3])
+    scene.cable("by_table", **given | {"section": Circle(radius=0.01, tension_table=pulls)}, element="cable8p",
+                membrane="tabulated")
+    for name in ("loose", "by_table"):
+        with refused(f'relaxation "a": cable "{name}" resists tension alone, and a branch would push; take the '
+                     'membrane "full" or "assumed"'):
+            scene.relaxation(name, stiffness=1.0, time=1.0, name="a")
     for name in ("warm", "changing"):
         with refused(f'relaxation "a": cable "{name}" has a temperature or a rest_length that changes, which the '
                      "branch would take for strain; leave it out"):
