@@ -13,8 +13,8 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 
+from ..base.quadrature import gauss
 from ..kernels.libraries import kernels_of
 
 SAMPLES = 8
@@ -51,7 +51,7 @@ def _stiffness(tension: float, bending: float, nodes: np.ndarray) -> np.ndarray:
     """Return the stiffness matrix of position and slope at all nodes; both ends are fixed."""
     size = 2 * len(nodes)
     total = np.zeros((size, size))
-    places, weights = leggauss(3)  # exact for products of slopes, of the fourth degree
+    places, weights = gauss(3)  # exact for products of slopes, of the fourth degree
     for k, h in enumerate(np.diff(nodes)):
         slopes, bends = np.moveaxis(_kernel("slopes").rows(3, h, h * (1 + places) / 2)[:, 0, :2], 1, 0)
         string, beam = (np.einsum("g,gi,gj->ij", h * weights / 2, each, each) for each in (slopes, bends))

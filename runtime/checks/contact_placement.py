@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..base.deferred import dataclass
+from ..base.quadrature import gauss
 from ..base.rotations import conjugate, rotate
 from ..engine import MAX_HARD_CONTACTS
 from ..errors import SceneError, near
@@ -32,8 +33,6 @@ SAMPLES = 8
 """Points of an element at which the penetration at the start is checked."""
 HARD_PENETRATION_ROUNDING = 1e-9
 """Rounding of the penetration of hard contact at the start, as a fraction of the lengths in it."""
-MAX_POINT_DISTANCE = float(np.diff(np.polynomial.legendre.leggauss(GAUSS_POINTS)[0]).max()) / 2
-"""Largest distance of neighbouring points of quadrature, as a fraction of the element; across a node it is smaller."""
 MAX_UNSEEN_PENETRATION = 1e-2
 """Penetration between points of a cable without a radius above which a note is given, as a fraction of the surface's
 radius."""
@@ -207,7 +206,7 @@ def _check_resolution(scene: SceneData, contact: Contact, rope: Rope) -> None:
     if (limit := resolved(scene, contact)) is None:
         return
     spans = zip(scene.route_of(rope).spans, rope.elements_of_spans, strict=True)
-    longest, most = max(span.length / n for span, n in spans), limit.chord / MAX_POINT_DISTANCE
+    longest, most = max(span.length / n for span, n in spans), limit.chord / max_point_distance()
     if longest > most:
         raise SceneError(contact.where, f'"{rope.name}" has elements of {show(float(longest), "m")}, between whose '
                          f'points of contact it may be more than {show(float(limit.allowed), "m")} below "{contact.b}"',
@@ -348,6 +347,14 @@ class Resolution(NamedTuple):
 
     allowed: float
     chord: float
+
+
+def max_point_distance() -> float:
+    """Return the largest distance of neighbouring points of quadrature, as a fraction of the element.
+
+    Across a node it is smaller.
+    """
+    return float(np.diff(gauss(GAUSS_POINTS)[0]).max()) / 2
 
 
 def resolved(scene: SceneData, contact: Contact) -> Resolution | None:

@@ -48,7 +48,7 @@ def along_elements(on_axis: Any, lengths: np.ndarray,
     """Return the shape functions of the axis and their slopes, (elements, points, vectors) each, by the kernel on_axis,
     and the weights (elements, points) in m.
 
-    lengths (elements,) in m; rule: points and weights between -1 and 1, as of `numpy.polynomial.legendre.leggauss`.
+    lengths (elements,) in m; rule: points and weights between -1 and 1, as of `gauss`.
     """
     places, weights = rule
     shapes = [[on_axis(length, length * (1 + x) / 2) for x in places] for length in lengths]

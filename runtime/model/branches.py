@@ -7,12 +7,13 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ..base.deferred import dataclass
+from ..base.quadrature import gauss
 from ..parts.branch import Branch
 from .attachments import ModelBuilder
 from .coupling import CouplingKind, CouplingModel
 
 KERNELS = {2: "planar_branch", 3: "branch"}
-GAUSS = np.polynomial.legendre.leggauss(2)
+GAUSS_POINTS = 2
 """Points of an element: those at which strain and curvature of a cubic element are most accurate. With more of them the
 strain of a bent element, which its bending alone makes, would be stiff against bending."""
 
@@ -47,10 +48,11 @@ def branch_models(builder: ModelBuilder) -> Iterator[BranchModel]:
         stiffness = part.stiffness * np.array([not part.bends, *[part.bends] * n_curvature], dtype=float)
         for element in range(cable.n_elements):
             length = cable.mesh.length(element)
-            shapes = np.array([cable.kernel("slopes")(length, length * (1 + x) / 2)[0] for x in GAUSS[0]])
+            places, weights = gauss(GAUSS_POINTS)
+            shapes = np.array([cable.kernel("slopes")(length, length * (1 + x) / 2)[0] for x in places])
             yield BranchModel(type="branch", name=part.name or "", results=[*part.results], kernel=KERNELS[dim],
                               cable=number, element=element, stiffness=stiffness, time=part.relaxation_time,
-                              limit=part.limit, weights=length * GAUSS[1] / 2, N_x=shapes[:, 0], N_xx=shapes[:, 1])
+                              limit=part.limit, weights=length * weights / 2, N_x=shapes[:, 0], N_xx=shapes[:, 1])
 
 
 KINDS = (CouplingKind("branch", Branch.group, branch_models, has_state=False),)

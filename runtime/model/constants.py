@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..base.quadrature import gauss
 from ..kernels.elements import part_of_manifest
 from ..kernels.libraries import kernels_of, of_library
 from ..parts.cable import Cable
@@ -68,7 +69,7 @@ def element_constants(library: str | None, element: str, law: str, length: float
 def integral_over_volume(stiffness_at: Callable[..., Any], length: float, e0: np.ndarray | None,
                          S: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the integral of the kernel `stiffness_at`: the form over Gram products, and the Gram products of e0."""
-    places, weights = np.polynomial.legendre.leggauss(POINTS)
+    places, weights = gauss(POINTS)
     shares = []
     for x, weight in zip(length / 2 * (1 + places), length / 2 * weights, strict=True):
         shares += [stiffness_at(length, e0, np.array([x, y, z]), weight * D) for y, z, D in section_points(S)]

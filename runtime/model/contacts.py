@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..base.deferred import dataclass
+from ..base.quadrature import gauss
 from ..engine import FRICTION_MARK, NO_TIME, SPAN_BEGIN, SPAN_STRETCH
 from ..kernels.element_line import along_elements
 from ..kernels.mesh import Mesh
@@ -25,7 +26,6 @@ from .attachments import AttachmentModel, ModelBuilder
 from .coupling import CouplingKind, CouplingModel, no_numbers
 from .span_coordinates import AlongSpan, SpanCoordinates
 
-GAUSS = np.polynomial.legendre.leggauss(GAUSS_POINTS)
 KERNELS = {2: "planar_surface", 3: "surface"}
 NONE = np.zeros(0)
 MARK_PLACE = slice(3, 6)
@@ -110,8 +110,8 @@ class RopeContactModel(AlongSpan, CouplingModel):
     tangential: float
     cable: int = -1
     n_points: int = GAUSS_POINTS
-    weights: np.ndarray = field(default_factory=lambda: GAUSS[1] / 2)
-    arc: np.ndarray = field(default_factory=lambda: (1 + GAUSS[0]) / 2)
+    weights: np.ndarray = field(default_factory=lambda: gauss(GAUSS_POINTS)[1] / 2)
+    arc: np.ndarray = field(default_factory=lambda: (1 + gauss(GAUSS_POINTS)[0]) / 2)
 
     @property
     def ends(self) -> Sequence[AttachmentModel]:
@@ -232,11 +232,11 @@ def _along_cable(model: ContactModel, index: int, builder: ModelBuilder) -> None
     """Add the quadrature on a cable."""
     cable = builder.cables[index]
     hull = builder.hull(index)
-    model.cable, model.n_points, model.hull, model.spread = index, len(GAUSS[0]), hull.points, hull.spread
+    model.cable, model.n_points, model.hull, model.spread = index, GAUSS_POINTS, hull.points, hull.spread
     model.entries |= {"length": cable.mesh.total, "n_hull": hull.points.shape[1]}
-    model.N, _, model.weights = along_elements(cable.kernel("on_axis"), cable.mesh.lengths, GAUSS)
+    model.N, _, model.weights = along_elements(cable.kernel("on_axis"), cable.mesh.lengths, gauss(GAUSS_POINTS))
     model.stride = 0 if cable.mesh.is_even else model.n_points
-    model.arc = _arc_lengths(cable.mesh, GAUSS[0])
+    model.arc = _arc_lengths(cable.mesh, gauss(GAUSS_POINTS)[0])
 
 
 def _drawn(model: ContactModel, builder: ModelBuilder) -> np.ndarray:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..base.deferred import dataclass
+from ..base.quadrature import gauss
 from ..kernels.element_line import along_elements
 from ..parts.cable import Cable
 from ..parts.drag import Drag
@@ -21,7 +22,7 @@ from ..parts.section import Section
 from ..parts.velocity_table import AXES
 from .attachments import AttachmentModel, ModelBuilder
 from .coupling import CouplingKind, CouplingModel, no_numbers
-from .loads import GAUSS
+from .loads import GAUSS_POINTS
 from .span_coordinates import AlongSpan, SpanCoordinates
 
 MIN_SPEED = 1e-30
@@ -147,7 +148,7 @@ def _along_line(model: DragModel, part: Drag, section: Section) -> None:
     width = part.width(section) if has_width else 0.0
     model.lift = (pressure * width * part.lift, MIN_SPEED)
     model.coefficients = (pressure * width * part.normal, pressure * np.pi * width * part.tangential, MIN_SPEED)
-    model.n_points = len(GAUSS[0])
+    model.n_points = GAUSS_POINTS
     if part.polar is not None:
         model.section = (pressure * width, width, MIN_SPEED)
 
@@ -158,10 +159,11 @@ def _along_cable(model: DragModel, part: Drag, cable: Cable, stretch: UniformPie
     on = builder.cables[model.cable]
     model.first, model.n_elements = stretch.first, stretch.end - stretch.first
     lengths = on.mesh.lengths if on.mesh.is_even else on.mesh.lengths[stretch.first : stretch.end]
-    model.stride = 0 if on.mesh.is_even else len(GAUSS[0])
-    model.N, model.N_x, model.weights = along_elements(on.kernel("on_axis"), lengths, GAUSS)
+    model.stride = 0 if on.mesh.is_even else GAUSS_POINTS
+    rule = gauss(GAUSS_POINTS)
+    model.N, model.N_x, model.weights = along_elements(on.kernel("on_axis"), lengths, rule)
     if part.polar is not None:
-        slopes = [[on.kernel("slopes")(length, length * (1 + x) / 2) for x in GAUSS[0]] for length in lengths]
+        slopes = [[on.kernel("slopes")(length, length * (1 + x) / 2) for x in rule[0]] for length in lengths]
         model.N_chord = np.einsum("c,egck->egk", part.foil_axes[1], np.array(slopes)[..., 0, :])
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from ..base.deferred import dataclass
+from ..base.quadrature import gauss
 from ..checks.placement import placed_attachment
 from ..parts.attachment import Attachment
 from ..parts.load import DistributedForce, Force, Load, Moment
@@ -17,7 +18,7 @@ from .span_coordinates import AlongSpan, SpanCoordinates
 
 EVERYWHERE = 1e300
 """m, beyond the ends of all ropes."""
-GAUSS = np.polynomial.legendre.leggauss(4)
+GAUSS_POINTS = 4
 """Points along an element of a distributed force: exact to degree 7."""
 
 
@@ -133,7 +134,7 @@ class LoadBuilder:
         model = self.cables[self.builder.cable_index[load.cable]]
         points = [(element, (start + stop) / 2 + (stop - start) / 2 * x, (stop - start) / 2 * w)
                   for element, start, stop in model.mesh.covered(load.start, load.stop)
-                  for x, w in zip(*GAUSS, strict=True)]
+                  for x, w in zip(*gauss(GAUSS_POINTS), strict=True)]
         self._along_cable(load.cable, number, points, value, load.follower)
 
     def _along_cable(self, cable: str, number: int, points: Iterable[tuple[int, float, float]], value: np.ndarray,

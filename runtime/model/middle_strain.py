@@ -7,6 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from ..base.quadrature import gauss
 from ..engine import slope_lengths
 from ..kernels.libraries import kernels_of
 from .model import CableModel
@@ -29,7 +30,7 @@ def _slopes(element: str, library: str | None, lengths: bytes, parts: tuple[floa
 
 def gauss_rule(points: int) -> Rule:
     """Return the rule of Gauss with this number of points."""
-    at, weights = np.polynomial.legendre.leggauss(points)
+    at, weights = gauss(points)
     return (0.5 * (1 + at)).tolist(), (0.5 * weights).tolist()
 
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..base.quadrature import gauss
 from ..base.rotations import cross
 from .validation import Points, items, show, shown, vector
 
@@ -27,7 +28,7 @@ SWING_FACTOR, SWING_ANGLE = 1.2, 1e-3
 a circle the ratio of the angles is a half with even points, and at most one.
 """
 
-GAUSS, WEIGHTS = np.polynomial.legendre.leggauss(8)
+GAUSS_POINTS = 8
 QUADRATURE_INTERVALS = 8
 """Between two points: with eight Gauss points in each, exact to rounding."""
 MAX_SAMPLES = 4096
@@ -132,9 +133,10 @@ class Spline:
 
     def _arc(self, start: np.ndarray, end: np.ndarray) -> np.ndarray:
         """Return the lengths (n,) between two parameters (n,) in each interval."""
+        places, weights = gauss(GAUSS_POINTS)
         half = 0.5 * (end - start)
-        at = 0.5 * (start + end)[:, None] + half[:, None] * GAUSS
-        return half * (np.linalg.norm(self._r_t(at), axis=-1) @ WEIGHTS)
+        at = 0.5 * (start + end)[:, None] + half[:, None] * places
+        return half * (np.linalg.norm(self._r_t(at), axis=-1) @ weights)
 
     def _parameter(self, s: ArrayLike) -> np.ndarray:
         """Return the parameters of arc-lengths, by Newton's method with the speed as derivative."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import os
 import re
-import tomllib
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from itertools import takewhile
@@ -54,6 +53,8 @@ def read(text: str, origin: str, new: Callable[..., S], directory: Directory = "
     working directory; libraries: directories of elements that the text may load. Raises SceneError.
     """
     _check_depth(text, origin)
+    import tomllib  # compiles its expressions, as long as a small scene takes to run
+
     try:
         tables = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:  # its text gives line and column
@@ -333,6 +334,8 @@ def _first(lines: list[str], pattern: str, fits: Callable[[dict[str, Any]], bool
 
 
 def _parsed(lines: list[str]) -> dict[str, Any] | None:
+    import tomllib
+
     try:
         return tomllib.loads("".join(lines))
     except (ValueError, RecursionError):

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...base.quadrature import gauss
 from ...base.rotations import product, quaternion, rotate, turned_by
 from ...model.rope_states import POINTS_OF_ELEMENT, as_drawn, points_of_spans
 from ...parts.rope import Rope
@@ -139,7 +140,7 @@ def _span(points: np.ndarray, s: np.ndarray, elements: int, divisions: int) -> t
     inside = np.einsum("jk,teki->teji", np.vander(x, 4, increasing=True) @ fit, of_element)
     length = s[:, first + POINTS_OF_ELEMENT] - s[:, first]
     at = s[:, first, None] + length[..., None] * x
-    X, weight = np.polynomial.legendre.leggauss(LAW_POINTS)
+    X, weight = gauss(LAW_POINTS)
     powers = np.arange(1, 4)
     derivative = (powers * ((X + 1) / 2)[:, None] ** (powers - 1)) @ fit[1:]
     slope = np.einsum("jk,teki->teji", derivative, of_element) / length[..., None, None]

@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from ...base.quadrature import gauss
 from ...model.model import CableModel
 from ...model.states import positions, spatial
 from ...parts.cable import Cable
@@ -113,7 +114,7 @@ def _of_inertia(cable: Cable, model: CableModel, cuts: Cuts, e: np.ndarray, a: n
 
     The Gauss rule is exact for the product of two shape functions.
     """
-    places, weights = np.polynomial.legendre.leggauss(2 * sum(set(name) <= set("r_x") for name in model.vectors))
+    places, weights = gauss(2 * sum(set(name) <= set("r_x") for name in model.vectors))
     area, yy, zz = (_per_cut(cable, cuts, partial(_inertia, k)) for k in range(3))
     force = moment = np.zeros(3)
     across = [(k, I) for k, (name, I) in enumerate((("r_y", yy), ("r_z", zz)), start=1) if name in model.vectors]
@@ -159,7 +160,7 @@ def _of_spread(model: CableModel, spread: Spread, x: np.ndarray, e: np.ndarray) 
 
     x: (T or 1, n) in m; e: (T, n, vectors, 3). The whole spread is summed by its own rule, as its generalised force is.
     """
-    places, weights = np.polynomial.legendre.leggauss(len(spread.x))
+    places, weights = gauss(len(spread.x))
     force = moment = np.zeros(3)
     length = x - spread.start
     for place, weight in zip((1 + places) / 2, weights / 2, strict=True):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ...base.quadrature import gauss
 from ...base.rotations import rotate
 from ...engine import Engine
 from ...errors import SceneError
@@ -18,7 +19,7 @@ from ...model.attachments import CARRIED, UP, AttachmentModel
 from ...model.drag_forces import Turning, densities
 from ...model.drags import DragModel
 from ...model.kinds import COUPLINGS
-from ...model.loads import GAUSS
+from ...model.loads import GAUSS_POINTS
 from ...model.model import CableModel, Model
 from ...model.states import attachment_points, element_coordinates, positions, spatial
 from ...parts.load import DistributedForce, Force, Moment
@@ -174,12 +175,13 @@ class CableLoads:
         is_r = positions(cable)
         for element, start, stop in cable.mesh.covered(load.start, load.stop):
             half = (stop - start) / 2
-            places = (start + stop) / 2 + half * GAUSS[0]
+            places, weights = gauss(GAUSS_POINTS)
+            places = (start + stop) / 2 + half * places
             each = [scale[:, None, None] * self._force(cable, element, x, value, load.follower) for x in places]
             density = spatial(np.stack([f[:, is_r].sum(axis=1) for f in each], axis=1))
-            f = sum(half * w * part for w, part in zip(GAUSS[1], each, strict=True))
+            f = sum(half * w * part for w, part in zip(weights, each, strict=True))
             self.spreads.setdefault(number, []).append(
-                Spread(element, start, stop, places, half * GAUSS[1], density, np.asarray(f)))
+                Spread(element, start, stop, places, half * weights, density, np.asarray(f)))
 
     @cached_property
     def _engine(self) -> Engine:

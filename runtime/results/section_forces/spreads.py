@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...base.quadrature import gauss
 from ...model.contacts import ContactModel
 from ...model.drag_forces import Turning
 from ...model.drags import DragModel
@@ -81,7 +82,7 @@ class Rule(Quadrature):
 
 def rules_of(cable: CableModel, of: DragModel | ContactModel) -> list[Rule]:
     """Return the rules of a drag or contact, one for each element of its cable."""
-    places = (1 + np.polynomial.legendre.leggauss(of.n_points)[0]) / 2
+    places = (1 + gauss(of.n_points)[0]) / 2
     N_x, N_chord = getattr(of, "N_x", of.N), getattr(of, "N_chord", np.zeros(0))
     found = []
     first = getattr(of, "first", 0)

@@ -6,10 +6,11 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ...base.quadrature import gauss
 from ...parts.cable import Cable
 
-SAMPLES = np.polynomial.legendre.leggauss(6)[0]
-"""Points of an element, in half lengths from its middle."""
+POINTS = 6
+"""Points of an element."""
 MIN_SWING = 0.1
 """Smallest oscillation that is reported, over the largest mean tension of an element."""
 
@@ -19,14 +20,14 @@ def swinging(cable: Cable, s: np.ndarray, tension: Callable[[np.ndarray], np.nda
 
     tension: by the elastic law, (T, m) in N, at arc-lengths (1, m) in m.
     """
-    mesh = cable.mesh
+    mesh, samples = cable.mesh, gauss(POINTS)[0]
     elements = np.unique(np.clip(mesh.element_at(s.ravel()), 0, cable.elements - 1)).astype(int)
     start, length = mesh.each_start(elements), np.broadcast_to(mesh.each_length(elements), elements.shape)
-    at = start[:, None] + 0.5 * length[:, None] * (1 + SAMPLES)
+    at = start[:, None] + 0.5 * length[:, None] * (1 + samples)
     found = tension(at.reshape(1, -1)).reshape(-1, *at.shape)
     mean = found.mean(axis=-1, keepdims=True)
-    tilt = (found * SAMPLES).sum(axis=-1, keepdims=True) / (SAMPLES**2).sum()
-    swing = np.abs(found - mean - tilt * SAMPLES).max(axis=(0, 2))
+    tilt = (found * samples).sum(axis=-1, keepdims=True) / (samples**2).sum()
+    swing = np.abs(found - mean - tilt * samples).max(axis=(0, 2))
     largest, k = float(np.abs(mean).max()), int(np.argmax(swing))
     if not swing[k] > MIN_SWING * largest > 0:
         return None

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...checks.contact_placement import MAX_POINT_DISTANCE, resolved
+from ...checks.contact_placement import max_point_distance, resolved
 from ...engine import Engine
 from ...model.contacts import ContactModel
 from ...model.states import distances
@@ -41,7 +41,7 @@ class CoarseContact(Note):
         for contact in self.model.contacts:
             if contact.cable >= 0 and (limit := resolved(self.scene, self.scene.contacts[contact.name])) is not None:
                 cable = self.model.cables[contact.cable]
-                apart = MAX_POINT_DISTANCE * np.broadcast_to(cable.mesh.lengths, cable.n_elements)
+                apart = max_point_distance() * np.broadcast_to(cable.mesh.lengths, cable.n_elements)
                 long = np.flatnonzero(apart > limit.chord)
                 if len(long):
                     self._coarse.append(_LongElements(contact, long, apart[long], *limit))
@@ -61,6 +61,6 @@ class CoarseContact(Note):
         """Return a note for each contact with such an element."""
         return [f'{part.where}: "{part.a}" has contact points that are up to {self.found[name][0]:.3g} m apart; '
                 f'between them it may be more than {show(each.allowed, "m")} below "{part.b}", or pass through it, '
-                f"undetected; in the contact zone, take elements of at most {each.chord / MAX_POINT_DISTANCE:.3g} m"
+                f"undetected; in the contact zone, take elements of at most {each.chord / max_point_distance():.3g} m"
                 for each in self._coarse if (name := each.contact.name) in self.found
                 for part in (self.scene.contacts[name],)]

@@ -12,10 +12,11 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
+from ...base.quadrature import gauss
 from ...model.contacts import ContactModel
 from ...model.drag_forces import at_rest, densities
 from ...model.drags import DragModel
-from ...model.loads import GAUSS, DeadLoadModel
+from ...model.loads import GAUSS_POINTS, DeadLoadModel
 from ...model.model import Model
 from ...model.unknowns import as_supports_leave
 from ...parts.cable import Cable
@@ -138,7 +139,7 @@ def _add_drag(model: Model, drag: DragModel, q: np.ndarray, p: float, force: np.
     cable = model.cables[drag.cable]
     f = densities(model, drag, np.zeros(1), q[None], np.zeros((1, model.n_dof)))[0][0, ..., : model.dim]
     f = p * f * np.broadcast_to(drag.weights, f.shape[:2])[:, :, None]
-    share, at = (1 + GAUSS[0]) / 2, cable.vectors.index("r")
+    share, at = (1 + gauss(GAUSS_POINTS)[0]) / 2, cable.vectors.index("r")
     own, node = cable.nodal(force), cable.mesh.first_node(np.arange(drag.first, drag.first + drag.n_elements))
     own[node, at] += np.einsum("egd,g->ed", f, 1 - share)
     own[node + 1, at] += np.einsum("egd,g->ed", f, share)
