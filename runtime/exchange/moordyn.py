@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,17 +18,30 @@ from ..parts.surface_shapes import Plane
 from ..parts.validation import show, shown
 from ..scene.scene import Scene
 from .moordyn_file import MoorDynFile, Row, named, read_file
+from .moordyn_laws import AxialLaw
 
 DEFAULTS = {"g": 9.80665, "rhow": 1025.0, "wtrdpth": 0.0, "kbot": 3e6, "cbot": 3e5, "frictioncoefficient": 0.0}
 """Options by their names in small letters, with MoorDyn's defaults."""
 SYNONYMS = {"gravity": "g", "rho": "rhow", "wtrdens": "rhow", "wtrdnsty": "rhow", "kb": "kbot", "cb": "cbot",
-            "depth": "wtrdpth", "wdepth": "wtrdpth", "frictioncoeff": "frictioncoefficient"}
-ENVIRONMENT = {"wavekin": "waves", "currents": "currents"}
-"""Options of what is left out unless they are 0."""
+            "depth": "wtrdpth", "wdepth": "wtrdpth", "frictioncoeff": "frictioncoefficient",
+            "icfile": "fileic"}
+LEFT_OUT = {"wavekin": "waves are left out: give the fluid `waves`",
+            "currents": "currents are left out: give the fluid a velocity",
+            "seafloorfile": "the sea floor is even here: in the place of the bed give a `HeightField`",
+            "fileic": "the state of the file is left out: the run begins at rest"}
+"""What notes say of options that are not read, unless they are 0."""
+NUMERICAL = ("dtm", "dt", "cfl", "writelog", "tscheme", "dtic", "icdt", "tmaxic", "ictmax", "cdscaleic", "icdfac",
+             "threshic", "icthresh", "icgendynamic", "gendynamicic", "dtwave", "unifycurrentgrid", "writeunits",
+             "dtout", "disableoutput", "disableouttime", "fricdamp", "statdynfricscale")
+"""Options of MoorDyn's own integration and output, and of how it regularises friction."""
 ATTACHMENTS = (dict.fromkeys(("FIXED", "FIX", "ANCHOR"), "held")
                | dict.fromkeys(("COUPLED", "CPLD", "VESSEL", "VES", "FAIRLEAD"), "moved")
                | dict.fromkeys(("FREE", "POINT", "CONNECT", "CON"), "free"))
 """How a point or a body is held, by the words of its attachment: held, moved by the host program, or free."""
+PINNED = dict.fromkeys(("COUPLEDPINNED", "CPLDPIN", "VESSELPINNED", "VESPIN"), "pinned")
+"""Of bodies alone: the place is moved by the host program, and the body turns freely."""
+TURNING = ("free", "pinned")
+"""How bodies are held that turn."""
 NO_DIAMETER = 1e-3
 """m: of the section of a line whose diameter is 0, without buoyancy; its stiffness EA and mass stay."""
 DURATION = 60.0
@@ -43,26 +57,23 @@ class LineType:
     row: Row
     diameter: float
     mass: float
-    EA: float
-    BA: float
+    axial: AxialLaw
     EI: float
     drag: tuple[float, float]
     added: tuple[float, float]
 
     @classmethod
-    def of(cls, row: Row) -> LineType:
-        """Return the type of a line of the table. Raises SceneError."""
-        diameter, mass, EA, BA, EI = (row.number(k, what) for k, what in enumerate(
-            ("Diam", "Mass/m", "EA", "BA/-zeta", "EI"), start=1))
+    def of(cls, row: Row, folder: Path) -> LineType:
+        """Return the type of a line of the table; folder: that of the file. Raises SceneError."""
+        diameter, mass, EI = (row.number(k, what) for k, what in ((1, "Diam"), (2, "Mass/m"), (5, "EI")))
         Cd, Ca, Cdt, Cat = (row.number(k, what, 0.0) for k, what in enumerate(("Cd", "Ca", "CdAx", "CaAx"), start=6))
         for what, value, least in (("Diam", diameter, 0.0), ("EI", EI, 0.0), ("Cd", Cd, 0.0), ("Ca", Ca, 0.0),
                                    ("CdAx", Cdt, 0.0), ("CaAx", Cat, 0.0)):
             if value < least:
                 raise row.refused(f"{what} must not be negative, got {show(value)}")
-        for what, value in (("Mass/m", mass), ("EA", EA)):
-            if not value > 0:
-                raise row.refused(f"{what} must be positive, got {show(value)}")
-        return cls(row, diameter, mass, EA, BA, EI, (Cd, Cdt), (Ca, Cat))
+        if not mass > 0:
+            raise row.refused(f"Mass/m must be positive, got {show(mass)}")
+        return cls(row, diameter, mass, AxialLaw.of(row, folder), EI, (Cd, Cdt), (Ca, Cat))
 
     @property
     def area(self) -> float:
@@ -71,13 +82,20 @@ class LineType:
 
     def section(self) -> GeneralSection:
         """Return its section, with which the material has its stiffness."""
-        return GeneralSection(area=self.area, second_moment_about_z=self.EI * self.area / self.EA)
+        return GeneralSection(area=self.area, second_moment_about_z=self.EI * self.area / self.axial.EA,
+                              tension_table=self.axial.table)
+
+    @property
+    def membrane(self) -> str:
+        """Return the representation of axial strain: a line of MoorDyn does not push."""
+        return "tabulated" if self.axial.table else "full" if self.axial.spring else "tension_only"
 
     def material(self, segment: float) -> Material:
         """Return its material; segment: length of a segment, m, on which a damping ratio, -BA, depends."""
-        BA = self.BA if self.BA >= 0 else -self.BA * segment * math.sqrt(self.EA * self.mass)
-        return Material(youngs_modulus=self.EA / self.area, poisson_ratio=0.0, density=self.mass / self.area,
-                        damping_time=BA / self.EA)
+        EA, BA = self.axial.EA, self.axial.damping
+        BA = BA if BA >= 0 else -BA * segment * math.sqrt(EA * self.mass)
+        return Material(youngs_modulus=EA / self.area, poisson_ratio=0.0, density=self.mass / self.area,
+                        damping_time=BA / EA)
 
 
 @dataclass(frozen=True)
@@ -106,8 +124,8 @@ class Point:
         body = word.removeprefix("BODY") if word.startswith("BODY") else None
         if body is not None:
             of = named(bodies, body, row, "body")
-            return cls(row, of.how, of.place + of.axes @ place, body if of.how == "free" else None, M, V, drag, added,
-                       force)
+            return cls(row, of.how, of.place + of.axes @ place, body if of.how in TURNING else None, M, V, drag,
+                       added, force)
         if word not in ATTACHMENTS:
             raise row.refused(f"the attachment {shown(row.words[1])} is not read", "known: Fixed, Coupled, Free, Body#")
         return cls(row, ATTACHMENTS[word], place, None, M, V, drag, added, force)
@@ -115,26 +133,30 @@ class Point:
 
 @dataclass(frozen=True)
 class Body:
-    """A body: how it is held, as a `Point`; place in m, and axes (3, 3)."""
+    """A body: how it is held, as a `Point` or "pinned"; place in m, and orientation (4,), a unit quaternion."""
 
     row: Row
     how: str
     place: np.ndarray
-    axes: np.ndarray
+    orientation: np.ndarray
+
+    @property
+    def axes(self) -> np.ndarray:
+        """Return its axes (3, 3), as columns."""
+        return rotate(self.orientation, np.eye(3)).T
 
     @classmethod
     def of(cls, row: Row) -> Body:
         """Return the body of a line of the table. Raises SceneError."""
         word = row.word(1, "Attachment").upper()
-        if word not in ATTACHMENTS:
-            raise row.refused(f"the attachment {shown(row.words[1])} is not read", "known: Fixed, Coupled, Free")
+        holds = ATTACHMENTS | PINNED
+        if word not in holds:
+            raise row.refused(f"the attachment {shown(row.words[1])} is not read",
+                              "known: Fixed, Coupled, CoupledPinned, Free")
         place = np.array([row.number(k, ("X0", "Y0", "Z0")[k - 2]) for k in (2, 3, 4)])
         roll, pitch, yaw = (math.radians(row.number(k, ("r0", "p0", "y0")[k - 5])) for k in (5, 6, 7))
-        if ATTACHMENTS[word] == "free" and (roll or pitch or yaw):
-            raise row.refused("a free body that begins turned is not read", "draw it with its axes along the ground's")
         about_x, about_y, about_z = map(turned_by, np.diag([roll, pitch, yaw]))
-        axes = rotate(product(product(about_x, about_y), about_z), np.eye(3)).T
-        return cls(row, ATTACHMENTS[word], place, axes)
+        return cls(row, holds[word], place, product(product(about_x, about_y), about_z))
 
 
 class _Reader:
@@ -146,7 +168,7 @@ class _Reader:
         self.options = self._options()
         self.bodies = file.by_id("bodies", Body.of)
         self.points = file.by_id("points", lambda row: Point.of(row, self.bodies))
-        self.types = file.by_id("line types", LineType.of)
+        self.types = file.by_id("line types", lambda row: LineType.of(row, Path(file.name).parent))
         self.scene = Scene(gravity=(0, 0, -self.options["g"]))
         self.ends: dict[str, list[tuple[str, float]]] = {name: [] for name in self.points}
 
@@ -158,7 +180,7 @@ class _Reader:
         depth = max(self.options["wtrdpth"], *(-float(point.place[2]) for point in self.points.values()))
         self.scene.surface("bed", Plane(point=(0, 0, -depth), normal=(0, 0, 1)))
         for name, body in self.bodies.items():
-            if body.how == "free":
+            if body.how in TURNING:
                 self._body(f"body_{name}", body)
         for row in self.file.rows("lines"):
             self._line(row)
@@ -176,8 +198,10 @@ class _Reader:
             name = SYNONYMS.get(given, given)
             if name in DEFAULTS:
                 found[name] = row.number(0, row.words[1])
-            elif name in ENVIRONMENT and row.words[0] not in ("0", "0.0"):
-                self.notes.append(f"{row.where}: {ENVIRONMENT[name]} are left out: give the fluid a velocity")
+            elif name in LEFT_OUT and row.words[0] not in ("0", "0.0"):
+                self.notes.append(f"{row.where}: {LEFT_OUT[name]}")
+            elif name not in LEFT_OUT and name not in NUMERICAL:
+                self.notes.append(f"{row.where}: the option {shown(row.words[1])} is not known and is left out")
         return found
 
     def _line(self, row: Row) -> None:
@@ -194,8 +218,10 @@ class _Reader:
         with _at(row):
             cable = self.scene.cable(
                 name, start=tuple(start.tolist()), end=tuple(end.tolist()), rest="straight", rest_length=length,
-                elements=int(segments), element="cable12", strain="engineering", section=kind.section(),
-                material=kind.material(length / segments))
+                elements=int(segments), element="cable12", strain="engineering", membrane=kind.membrane,
+                section=kind.section(), material=kind.material(length / segments))
+            if kind.axial.spring:
+                self.scene.relaxation(name, stiffness=kind.axial.spring, time=kind.axial.time, name=f"{name}_viscosity")
             self._drag(name, kind)
             self._bed(name, kind)
         for s, each in zip((0.0, cable.length), ends, strict=True):
@@ -234,7 +260,8 @@ class _Reader:
             return
         with _at(point.row):
             if point.body is not None:
-                place = tuple((point.place - self.bodies[point.body].place).tolist())
+                of = self.bodies[point.body]
+                place = tuple(((point.place - of.place) @ of.axes).tolist())
                 for k, end in enumerate(ends):
                     self.scene.joint("spherical", end, (f"body_{point.body}", place), name=f"{name}_{k + 1}")
             elif point.how != "free":
@@ -262,19 +289,24 @@ class _Reader:
                             added_mass=point.added if point.volume else None)
 
     def _body(self, name: str, body: Body) -> None:
-        """Add a free body, with buoyancy and drag at its origin."""
+        """Add a body that turns, with buoyancy and drag at its origin."""
         row = body.row
         mass, centre = row.number(8, "Mass"), row.numbers(9, "CG", 3) if "|" in row.word(9, "CG") else (
             0.0, 0.0, row.number(9, "CG"))
         inertia, volume = row.numbers(10, "I", 3), row.number(11, "Volume", 0.0)
-        drag, added = (row.numbers(k, what, 6 if row.words[k].count("|") == 5 else 3) if k < len(row.words) else (0.0,)
+        drag, added = (_along_and_about(row, k, what) if k < len(row.words) else (0.0,) * 6
                        for k, what in ((12, "CdA"), (13, "Ca")))
-        if len(set(drag[:3])) > 1 or len(set(added[:3])) > 1 or any(drag[3:]) or any(added[3:]):
+        if len(set(drag[:3])) > 1 or len(set(added[:3])) > 1 or any(drag[3:]):
             self.notes.append(f"{row.where}: drag and added mass of the body take the mean of CdA and of Ca along its "
                               "axes, and none of rotations")
         CdA, Ca = float(np.mean(drag[:3])), float(np.mean(added[:3]))
         with _at(row):
-            self.scene.rigid_body(name, mass=mass, inertia=inertia, centre=centre, position=tuple(body.place.tolist()))
+            self.scene.rigid_body(name, mass=mass, inertia=inertia, centre=centre, position=tuple(body.place.tolist()),
+                                  orientation=tuple(body.orientation.tolist()))
+            if body.how == "pinned":
+                self.scene.joint("spherical", name, tuple(body.place.tolist()), name=f"{name}_held")
+                self.notes.append(f"{row.where}: the body is held where it is drawn; give its joint a motion, as the "
+                                  "program does that moves it")
             if self.options["rhow"] > 0 and (volume or CdA):
                 self.scene.drag(name, area=CdA, volume=volume, name=f"{name}_water",
                                 added_mass=Ca if volume else None)
@@ -286,6 +318,15 @@ class _Reader:
                 self.notes.append(f"{rows[0].where}: {table} are left out")
         if any(kind.diameter == 0 for kind in self.types.values()):
             self.notes.append("lines of diameter 0 have no water and no bed")
+
+
+def _along_and_about(row: Row, k: int, what: str) -> tuple[float, ...]:
+    """Return coefficients along and about the axes (6) from 1, 2 (along, about), 3 (along) or 6 numbers, as MoorDyn
+    reads them. Raises SceneError.
+    """
+    size = row.word(k, what).count("|") + 1
+    found = row.numbers(k, what, size if size in (2, 6) else 3)
+    return found if size == 6 else tuple(np.repeat(found, 3).tolist()) if size == 2 else found * 2
 
 
 class _at:  # noqa: N801  it reads as a word
@@ -308,7 +349,8 @@ def read_moordyn(path: str | os.PathLike[str]) -> Scene:
 
     Lines become cables of the names line_1, line_2, ... with as many elements as they have segments, in water up to
     z = 0 above an even bed; fixed and coupled points hold them by pins, free points are ties of line ends with a
-    `PointMass`; free bodies are rigid bodies, others hold the points on them. The run starts from rest. ``messages`` of
-    the scene say what it leaves out. Raises SceneError.
+    `PointMass`; free bodies are rigid bodies, others hold the points on them. Lines pull alone, by EA, by the table of
+    a file (`TensionTable`, a cubic between its points), or by static|dynamic stiffness, which is EA with a
+    `Relaxation`. The run starts from rest. ``messages`` of the scene say what it leaves out. Raises SceneError.
     """
     return _Reader(read_file(path)).read()

@@ -54,8 +54,8 @@ class Row:
         except ValueError:
             value = math.nan
         if not math.isfinite(value):
-            raise self.refused(f"{what} must be a number, got {shown(word)}", "files and tables of laws are not read: "
-                               "give one number, and the law in the scene written")
+            raise self.refused(f"{what} must be a number, got {shown(word)}", "files are read of the axial "
+                               "stiffness alone: give one number, and the law in the scene written")
         return value
 
     def numbers(self, k: int, what: str, size: int) -> tuple[float, ...]:

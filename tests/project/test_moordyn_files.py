@@ -71,19 +71,66 @@ def test_bodies_hold_points(tmp_path):
     assert scene.equilibrium()["body_2.position"][2] < -40
 
 
+def test_bodies_may_begin_turned_and_may_be_pinned(tmp_path):
+    bodies = ("---------------------- POINTS", "--- BODIES ---\nID Attachment X0 Y0 Z0 r0 p0 y0 Mass CG I V CdA Ca\n"
+              "(#) ...\n1 CoupledPinned 120 0 -50 30 20 90 5000 0 100 0.8 0.5|0.2 0.5\n---------------------- POINTS")
+    scene = of(tmp_path, bodies, ("3 Free 120 0 -50 5000 0.8 1.5 0.5", "3 Body1 0 2 1 0 0 0 0"))
+    body, end = scene.bodies["body_1"], scene.cables["line_3"].point(0)
+    x, y, z = np.radians([30, 20, 90])
+    rotation = (np.array([[1, 0, 0], [0, np.cos(x), -np.sin(x)], [0, np.sin(x), np.cos(x)]])
+                @ np.array([[np.cos(y), 0, np.sin(y)], [0, 1, 0], [-np.sin(y), 0, np.cos(y)]])
+                @ np.array([[np.cos(z), -np.sin(z), 0], [np.sin(z), np.cos(z), 0], [0, 0, 1]]))
+    assert end == pytest.approx(np.array([120, 0, -50]) + rotation @ [0, 2, 1])
+    assert body.point((0.0, 2.0, 1.0)) == pytest.approx(end)
+    assert scene.joints["body_1_held"].kind == "joint" and len(scene.joints) == 4
+    assert any("give its joint a motion" in note for note in scene.messages)
+    assert any("none of rotations" in note for note in scene.messages)
+
+
+def test_an_axial_law_from_a_file(tmp_path):
+    (tmp_path / "rope.dat").write_text("rope\nstrain tension\n- N\n-0.1 0\n0 0\n0.01 2e4\n0.03 1e5\n", encoding="utf-8")
+    scene = of(tmp_path, ("1e7 1e5", "rope.dat 1e5"))
+    table = scene.cables["line_3"].section.tension_table
+    assert (table.strain, table.force) == ((0.0, 0.01, 0.03), (0.0, 2e4, 1e5))
+    scene.equilibrium()
+    with refused(f"{tmp_path / 'bad.dat'}, line 5: tension must be a number, got 'x'; files are read of the axial "
+                 "stiffness alone: give one number, and the law in the scene written"):
+        (tmp_path / "bad.dat").write_text("rope\n\n\n0 0\n0.01 x\n", encoding="utf-8")
+        of(tmp_path, ("1e7 1e5", "bad.dat 1e5"))
+
+
+@pytest.mark.parametrize("dampings", [(4e9,), (4e9, 11e6)])
+def test_static_and_dynamic_stiffness(dampings, tmp_path):
+    """The impedance is that of MoorDyn's two springs in series, each beside its dashpot."""
+    static, dynamic, (slow, fast) = 1.4e8, 1.6e8, (*dampings, 0.0)[:2]
+    scene = of(tmp_path, ("1e7 1e5", f"{static}|{dynamic} {'|'.join(map(str, dampings))}"))
+    material, section = scene.cables["line_3"].material, scene.cables["line_3"].section
+    branch = scene.branches["line_3_viscosity"]
+    EA = material.youngs_modulus * section.area
+    for p in 1j * np.array([1e-3, 1e-2, 0.1, 1, 10, 100]):
+        first, second = dynamic * static / (dynamic - static) + slow * p, dynamic + fast * p
+        ours = EA * (1 + material.damping_time * p) + branch.stiffness * branch.time * p / (1 + branch.time * p)
+        assert ours == pytest.approx(first * second / (first + second), rel=1e-12)
+
+
 def test_what_it_leaves_out_is_said(tmp_path):
-    scene = of(tmp_path, ("9.81 g", "9.81 g\n1 WaveKin"), ("2 Fixed 0 -100 -100 0", "2 Fixed 0 -100 -100 7"),
+    options = ("9.81 g", "9.81 g\n1 WaveKin\nbed.txt SeafloorFile\n3 depthCharge")
+    scene = of(tmp_path, options, ("2 Fixed 0 -100 -100 0", "2 Fixed 0 -100 -100 7"),
                ("4 Coupled", "5 Free 0 0 0 0 0 0 0\n4 Coupled"), ("--------------------- need", "--- CONTROL ---\nChan "
                 "Line\n() ()\n1 1\n--------------------- need"))
     said = "\n".join(scene.messages)
-    for part in ("waves are left out", "M, V and CdA of a point that is not free are left out", "the point has no line "
-                 "and is left out", "in the place of its pin give a motion", "control are left out"):
+    for part in ("waves are left out", "the sea floor is even here", "the option 'depthCharge' is not known",
+                 "M, V and CdA of a point that is not free are left out", "the point has no line and is left out",
+                 "in the place of its pin give a motion", "control are left out"):
         assert part in said, said
 
 
 BAD = {
-    "5e8": ("5e8", "curve.txt", 6, "EA must be a number, got 'curve.txt'; files and tables of laws are not read: give "
-            "one number, and the law in the scene written"),
+    "law": ("5e8", "5e8|6e8|0.4", 6, "the axial law '5e8|6e8|0.4' is not read; known: a number, a file of strain and "
+            "tension, static|dynamic stiffness"),
+    "stiffness": ("5e8", "5e8|4e8", 6, "EA must be static|dynamic stiffness, the dynamic one larger, got '5e8|4e8'"),
+    "EA": ("5e8", "-5e8", 6, "EA must be positive, got -500000000"),
+    "dampings": ("-0.8 0 1.6", "1e6|1e5 0 1.6", 6, "BA must have no more numbers than EA, got '1e6|1e5'"),
     "mass": ("150 5e8", "0 5e8", 6, "Mass/m must be positive, got 0"),
     "type": ("1 chain 1 3", "1 chian 1 3", 18, "there is no line type 'chian'; did you mean \"chain\"?"),
     "point": ("1 chain 1 3", "1 chain 9 3", 18, "there is no point '9'; known: 1, 2, 3, 4"),
@@ -99,10 +146,10 @@ BAD = {
                 "give those of MoorDyn-2: ID LineType AttachA AttachB UnstrLen NumSegs Outputs"),
     "heading": ("- OPTIONS -", "- OPTOINS -", 21, "the heading 'OPTOINS' is not known; known: LINE TYPES, ROD TYPES, "
                 "BODIES, RODS, POINTS, LINES, FAILURE, CONTROL, OPTIONS, OUTPUT"),
-    "depth": ("100 WtrDpth", "bed.txt WtrDpth", 28, "WtrDpth must be a number, got 'bed.txt'; files and tables of "
-              "laws are not read: give one number, and the law in the scene written"),
-    "nan": ("0 100 -100", "0 nan -100", 11, "Y must be a number, got 'nan'; files and tables of laws are not read: "
-            "give one number, and the law in the scene written"),
+    "depth": ("100 WtrDpth", "bed.txt WtrDpth", 28, "WtrDpth must be a number, got 'bed.txt'; files are read of "
+              "the axial stiffness alone: give one number, and the law in the scene written"),
+    "nan": ("0 100 -100", "0 nan -100", 11, "Y must be a number, got 'nan'; files are read of the axial stiffness "
+            "alone: give one number, and the law in the scene written"),
 }
 
 
