@@ -172,9 +172,11 @@ class Part(BaseModel, metaclass=_TranslatingType):
         return self.model_copy() if self.__pydantic_private__ is None else super().__copy__()
 
     def _copied(self, update: Mapping[str, Any], given: set[str]) -> Self:
-        """Return a copy with other values; given: the fields that were given."""
-        made, put = object.__new__(type(self)), object.__setattr__
-        put(made, "__dict__", {**self.__dict__, **update})
+        """Return a copy with other values, without what was computed of the old; given: fields that were given."""
+        made, put, values = object.__new__(type(self)), object.__setattr__, self.__dict__
+        if update and len(values) > len(fields := type(self).model_fields):
+            values = {name: values[name] for name in fields}
+        put(made, "__dict__", {**values, **update})
         put(made, "__pydantic_fields_set__", given)
         put(made, "__pydantic_extra__", None)
         put(made, "__pydantic_private__", None)
