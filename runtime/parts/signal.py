@@ -482,13 +482,18 @@ AnySignal = Annotated[Signal, checked(signal, {"anyOf": [{"type": "number"}, SIG
 
 
 def extremes(made: Signal) -> tuple[float, float]:
-    """Return bounds of a signal over all times: exact ones of its polynomials, less and plus its sine's amplitude."""
+    """Return bounds of a signal over all times: those of its polynomials, less and plus its sine's amplitude.
+
+    What is 0 to rounding is 0.
+    """
     breaks, coefficients = made.pieces()
     found = []
     for piece, length in zip(coefficients, np.diff(breaks), strict=True):
         turns = np.roots(np.polynomial.polynomial.polyder(piece)[::-1])
         inside = turns.real[(np.abs(turns.imag) <= TURN_TOLERANCE * length) & (turns.real > 0) & (turns.real < length)]
-        found.append(np.polynomial.polynomial.polyval(np.array([0.0, *inside, length]), piece))
+        values = np.polynomial.polynomial.polyval(np.array([0.0, *inside, length]), piece)
+        rounding = CANCELLATION_TOLERANCE * np.abs(piece * length ** np.arange(len(piece))).max()
+        found.append(np.where(np.abs(values) <= rounding, 0.0, values))
     values, amplitude = np.concatenate([*found, [0.0] * (not found)]), abs(made.sine.amplitude)
     return float(values.min() - amplitude), float(values.max() + amplitude)
 
