@@ -52,6 +52,9 @@ NEGLIGIBLE_RATIO = 1e-6
 GAP_TOLERANCE = 1e-6
 """Relative distance of adjacent eigenvalues between which a count is certain."""
 
+ROUNDING_RATIO = 4 * SHIFT_RATIO
+"""Scale of a cluster over the rounding errors of its eigenvalues: none of them is below the shift of the inverse."""
+
 STIFFNESS_ROUNDING = 4 * np.finfo(float).eps
 """Relative error of the entries of K and of their sums."""
 
@@ -131,6 +134,19 @@ class Pencil:
         values, x, error = self._taken_apart(values, x, after, top)
         return self.unit * values, self.scale[:, None] * x, self.unit * error, self.unit * after
 
+    def refined(self, values: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return pairs that LAPACK found, of all at once, without the rounding of the largest eigenvalue, and the
+        rounding errors of the eigenvalues; none of the values (n,), rising, is zero.
+
+        One iteration by the inverse, and the pairs of the space of its vectors, x (coordinates, n) as of `lowest`.
+        """
+        x = self.inverse(-np.abs(values).max() / self.unit / SHIFT_RATIO)(x / self.scale[:, None])
+        x = x / np.sqrt(np.sum(x * (self.M @ x), axis=0))
+        values, turn = eigh(x.T @ (self.K @ x), x.T @ (self.M @ x))
+        x = x @ turn
+        error = np.maximum(self.uncertainty(x), EIGENVALUE_ROUNDING * np.abs(values).max())
+        return self.unit * values, self.scale[:, None] * x, self.unit * error
+
     def _by_lapack(self) -> tuple[np.ndarray, np.ndarray, float, float]:
         """Return all pairs of the scaled matrices, infinity for the next eigenvalue, and the size of the largest."""
         free = basis(self.C)
@@ -176,12 +192,16 @@ class Pencil:
         if not small or values[0] < -CLUSTER_RATIO * top or small == self.degrees:
             return values, x, error
         after = values[small] if small < len(values) else after
-        scale = max(self.reaching(small), NEGLIGIBLE_RATIO * after)
-        if not scale < CLUSTER_RATIO * top or self.below(np.sqrt(NEGLIGIBLE_RATIO) * after) != small:
+        bound, rounding = np.sqrt(NEGLIGIBLE_RATIO) * after, self.uncertainty(x[:, :small]).max()
+        scale = max(self.reaching(small), NEGLIGIBLE_RATIO * after, ROUNDING_RATIO * rounding)
+        if not scale < CLUSTER_RATIO * top or self.below(bound) != small:
             return values, x, error
-        own = self._nearest(self.inverse(-scale / SHIFT_RATIO), x[:, :small], x[:, :0], small)
-        found, own = self._sorted(own)
-        values[:small], x[:, :small], error[:small] = self._taken_apart(found, own, after, scale)
+        while scale < CLUSTER_RATIO * top:
+            found, own = self._sorted(self._nearest(self.inverse(-scale / SHIFT_RATIO), x[:, :small], x[:, :0], small))
+            if len(found) == small and found[-1] < bound:  # as many as are counted below it: these are all of them
+                values[:small], x[:, :small], error[:small] = self._taken_apart(found, own, after, scale)
+                break
+            scale *= SHIFT_RATIO  # one was below the shift, where its inverse is negative
         return values, x, error
 
     def uncertainty(self, x: np.ndarray) -> np.ndarray:

@@ -34,9 +34,11 @@ ASYMMETRY_ROUNDING, MIN_ASYMMETRY = 1e-9, 1e-13
 """Asymmetry due to rounding, as a fraction of the stiffness of two coordinates, and of the largest; loads that turn
 cause more."""
 
-MAX_DENSE_UNKNOWNS, LOST_EIGENVALUE_RATIO = 600, 1e-9
-"""Unknowns up to which LAPACK computes all modes, and the fraction of the largest eigenvalue below which it loses
-them."""
+MAX_DENSE_UNKNOWNS = 600
+"""Unknowns up to which LAPACK computes all modes."""
+
+LOST_EIGENVALUE_RATIO, BLURRED_EIGENVALUE_RATIO = 1e-9, 1e-4
+"""Fractions of the largest eigenvalue below which LAPACK loses others, and below which it finds 12 digits at most."""
 
 MAX_UNSYMMETRIC_DEGREES = 3000
 """Degrees of freedom up to which modes with an unsymmetric stiffness are computed, all at once."""
@@ -275,21 +277,20 @@ def _solve(K: csc_array, M: csc_array, constraints: csc_array, n: int, fewer: st
 
 def _small(K: csc_array, M: csc_array, constraints: csc_array, n: int, pencil: Pencil
            ) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
-    """Return the same by LAPACK, except for eigenvalues lost in the rounding of the largest one, such as zeros."""
+    """Return the same by LAPACK, unless some are lost in the rounding of the largest eigenvalue, such as zeros."""
     free = null_space(constraints.toarray()) if constraints.shape[0] else np.eye(K.shape[0])
     k, m = free.T @ (K @ free), free.T @ (M @ free)
     try:
         squares, x = eigh((k + k.T) / 2, (m + m.T) / 2, subset_by_index=(0, n - 1))
     except (ValueError, np.linalg.LinAlgError):
         return pencil.lowest(n)
-    largest, vectors, after = fastest(K, M), free @ x, np.inf
+    smallest, largest, vectors = np.abs(squares).min(), fastest(K, M), free @ x
+    if smallest <= LOST_EIGENVALUE_RATIO * largest:
+        return pencil.lowest(n)
+    if smallest <= BLURRED_EIGENVALUE_RATIO * largest:
+        return *pencil.refined(squares, vectors), np.inf
     error = np.maximum(pencil.unit * pencil.uncertainty(vectors / pencil.scale[:, None]), EIGENVALUE_ROUNDING * largest)
-    lost = np.abs(squares) <= LOST_EIGENVALUE_RATIO * largest
-    if lost.any():
-        found, shapes, errors, after = pencil.lowest(n)
-        squares[lost], vectors[:, lost], error[lost] = found[:n][lost], shapes[:, :n][:, lost], errors[:n][lost]
-        after = min(after, np.min(found[n:], initial=np.inf, where=found[n:] > errors[n:]))
-    return squares, vectors, error, after
+    return squares, vectors, error, np.inf
 
 
 def _is_symmetric(K: csc_array) -> bool:
