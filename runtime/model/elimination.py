@@ -104,6 +104,11 @@ class Elimination:
         p, s = self.pivots.astype(float), self.neighbours.astype(float)
         return float((p**3 / 3 + p**2 * s + p * s**2).sum())
 
+    @cached_property
+    def solves(self) -> float:
+        """Return the multiplications of a factorisation over those of a solve; 0 with a front that may be a band."""
+        return self.operations / max(self.size, 1) if self.banded_front < 0 else 0.0
+
     @property
     def cost(self) -> float:
         """Return the operations of a factorisation and its solves, with the overhead of fronts."""

@@ -184,6 +184,7 @@ cdef extern from * nogil:
         fu_span rows
     ctypedef struct fu_fronts:
         int m, n, size
+        double solves
         const int *start, *first, *pivots, *neighbours, *unknown, *in_parent, *parent, *child, *sibling
         const int *front, *place
     ctypedef struct fu_banded_front:

@@ -283,6 +283,7 @@ cdef class Translation(Arrays):
     cdef _fronts(self, fu_fronts *fronts, elimination, const int *numbers, dict first):
         """Fill in the elimination of a border; numbers, first: of its layout."""
         fronts.m, fronts.n, fronts.size = elimination.m, elimination.n, elimination.size
+        fronts.solves = elimination.solves
         fronts.start, fronts.first = numbers + <int>first["start"], numbers + <int>first["first"]
         fronts.pivots, fronts.neighbours = numbers + <int>first["pivots"], numbers + <int>first["neighbours"]
         fronts.unknown, fronts.in_parent = numbers + <int>first["unknown"], numbers + <int>first["in_parent"]

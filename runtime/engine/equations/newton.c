@@ -15,12 +15,22 @@
 /* least contraction for it: first iterations reduce linear errors, later ones are slower */
 #define MIN_CONTRACTION 0.03
 #define ROUNDING_FACTOR 100.0 /* times the rounding of positions: an increment that is not rounding */
-/* of a matrix, in iterations: below its true cost, since an old one costs accuracy, too */
+/* of a matrix, in iterations: below its true cost, since an old one costs accuracy, too; and, of a net of bodies, whose
+ * factorisation costs as much as tens of solves, a part of these: an iteration has a residual beside its solve */
 #define MATRIX_COST 2.0
+#define MATRIX_COST_SHARE 0.1
 /* largest ratio of the contraction of the residual, which weights stiffness more, to that of increments */
 #define RESIDUAL_UNDERESTIMATE 10.0
-/* a step with more than a fourth of the permitted iterations requests a new matrix for the next */
+/* a step with more than a fourth of the permitted iterations requests a new matrix for the next; of a costly one with
+ * more than half of them */
 #define SLOW_ITERATION_FRACTION 4
+#define SLOW_COSTLY_FRACTION 2
+
+/* Returns the cost of a matrix in iterations. */
+static double cost_of_matrix(const fu_run *run)
+{
+    return fmax(MATRIX_COST, MATRIX_COST_SHARE * run->newton.fronts->solves);
+}
 
 static int factor(fu_run *run, const fu_newton *method, double h)
 {
@@ -31,7 +41,7 @@ static int factor(fu_run *run, const fu_newton *method, double h)
     run->factored = !info;
     run->h_factored = h;
     run->contraction = FIRST_CONTRACTION;
-    run->matrix_cost = MATRIX_COST;
+    run->matrix_cost = cost_of_matrix(run);
     run->matrix_steps = 0;
     ++run->statistics.factorisations;
     run->statistics.time_factor += fu_clock() - begin;
@@ -80,8 +90,9 @@ static int blame(fu_run *run)
 
 /* Counts the last step for the matrix, which is renewed if its further use costs more than the average step, the matrix
  * included. */
-static void count_for_matrix(fu_run *run, int iterations, int most)
+static void count_for_matrix(fu_run *run, int iterations, int permitted)
 {
+    const int most = permitted / (cost_of_matrix(run) > MATRIX_COST ? SLOW_COSTLY_FRACTION : SLOW_ITERATION_FRACTION);
     run->matrix_cost += iterations;
     ++run->matrix_steps;
     if ((double)iterations * run->matrix_steps > run->matrix_cost || iterations > most) run->factored = 0;
@@ -152,7 +163,7 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
         }
         if (leaves_nothing(run, method, size, ratio)) {
             method->kinematics(run, h);
-            if (method->note_rest) count_for_matrix(run, i + 1, method->most_iterations / SLOW_ITERATION_FRACTION);
+            if (method->note_rest) count_for_matrix(run, i + 1, method->most_iterations);
             else if (SLOW_ITERATION_FRACTION * (i + 1) > method->most_iterations)
                 run->factored = 0; /* renewed for the next step */
             return 0;
@@ -218,7 +229,7 @@ static int iterate_compensated(fu_run *run, const fu_newton *method, double h)
         if (i > 0) contraction = fmin(contraction, ratio / (1.0 - ratio));
         if (leaves_little(run, size, contraction, after.gap)) {
             method->note_rest(run, h);
-            count_for_matrix(run, i + 1, method->most_iterations / SLOW_ITERATION_FRACTION);
+            count_for_matrix(run, i + 1, method->most_iterations);
             run->residual_at = run->next.t;
             return 0;
         }

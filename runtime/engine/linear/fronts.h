@@ -8,8 +8,9 @@
  * fronts. With one front the matrix is dense. Storage of the matrix, of front k from start[k] on: the columns of its
  * pivots, over the rows of pivots and neighbours; then the columns of the neighbours, over the rows of the pivots. */
 typedef struct {
-    int m, n;                            /* unknowns, fronts */
-    int size;                            /* numbers in the storage */
+    int m, n;      /* unknowns, fronts */
+    int size;      /* numbers in the storage */
+    double solves; /* arithmetic of a factorisation over that of a solve; 0 where the entries decide on it (a band) */
     const int *start;                    /* n */
     const int *first;                    /* n: first place of its unknowns in `unknown` and `in_parent` */
     const int *pivots;                   /* n: number of eliminated unknowns */
