@@ -161,16 +161,30 @@ FU_INLINE void forward(int n, int width, const double *A, int first, double *x)
 FU_SIMD_FUNCTION(fu_band_forward, forward, (int n, int width, const double *A, int first, double *x),
                  (n, width, A, first, x))
 
-/* Returns the product of rows [first, end) of a column and y. */
-FU_INLINE double product(int first, int end, const double *column, const double *y)
+FU_INLINE double sum_of(fu_simd_block x)
 {
-    fu_simd_block sums = {0.0};
+    return (x[0] + x[1]) + (x[2] + x[3]);
+}
+
+/* Computes the products of rows [first, end) of a group's columns and y, which passes through the registers once. */
+FU_INLINE void products(group g, int first, int end, const double *y, double of[FU_BAND_GROUP])
+{
+    fu_simd_block a = {0.0}, b = {0.0}, c = {0.0}, d = {0.0};
     int k = first;
-    for (; k + FU_SIMD_WIDTH <= end; k += FU_SIMD_WIDTH)
-        sums += *(const fu_simd_block *)(column + k) * *(const fu_simd_block *)(y + k);
-    double sum = (sums[0] + sums[1]) + (sums[2] + sums[3]);
-    for (; k < end; ++k) sum += column[k] * y[k];
-    return sum;
+    for (; k + FU_SIMD_WIDTH <= end; k += FU_SIMD_WIDTH) {
+        const fu_simd_block rows = *(const fu_simd_block *)(y + k);
+        a += *(const fu_simd_block *)(g.a + k) * rows;
+        b += *(const fu_simd_block *)(g.b + k) * rows;
+        c += *(const fu_simd_block *)(g.c + k) * rows;
+        d += *(const fu_simd_block *)(g.d + k) * rows;
+    }
+    of[0] = sum_of(a), of[1] = sum_of(b), of[2] = sum_of(c), of[3] = sum_of(d);
+    for (; k < end; ++k) {
+        of[0] += g.a[k] * y[k];
+        of[1] += g.b[k] * y[k];
+        of[2] += g.c[k] * y[k];
+        of[3] += g.d[k] * y[k];
+    }
 }
 
 FU_INLINE void backward(int n, int width, const double *A, double *x)
@@ -179,13 +193,15 @@ FU_INLINE void backward(int n, int width, const double *A, double *x)
     for (int j = (n - 1) / FU_BAND_GROUP * FU_BAND_GROUP; n && j >= 0; j -= FU_BAND_GROUP) {
         const group g = group_at(width, (double *)A, j);
         double *y = x + j, x0 = y[0] * g.a[0], x1 = y[1] * g.b[1], x2 = y[2] * g.c[2], x3 = y[3] * g.d[3];
+        double of[FU_BAND_GROUP];
         x1 -= g.b[stride] * y[stride];
         x2 -= g.c[stride] * y[stride] + g.c[stride + 1] * y[stride + 1];
         x3 -= g.d[stride] * y[stride] + g.d[stride + 1] * y[stride + 1] + g.d[stride + 2] * y[stride + 2];
-        x0 -= product(FU_BAND_GROUP, stride, g.a, y);
-        x1 -= product(FU_BAND_GROUP, stride, g.b, y);
-        x2 -= product(FU_BAND_GROUP, stride, g.c, y);
-        x3 -= product(FU_BAND_GROUP, stride, g.d, y);
+        products(g, FU_BAND_GROUP, stride, y, of);
+        x0 -= of[0];
+        x1 -= of[1];
+        x2 -= of[2];
+        x3 -= of[3];
         x2 -= g.c[3] * x3;
         x1 -= g.b[2] * x2 + g.b[3] * x3;
         y[0] = x0 - (g.a[1] * x1 + g.a[2] * x2 + g.a[3] * x3);
