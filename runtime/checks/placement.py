@@ -260,7 +260,7 @@ def check_grips(scene: SceneData) -> None:
 
 def placed_between(scene: SceneData, part: P) -> P:
     """Return a part with its attachments complete."""
-    attachments = {name: value for name, value in part if isinstance(value, Attachment)}
+    attachments = {name: value for name, value in vars(part).items() if isinstance(value, Attachment)}
     return part.model_copy(update={name: placed_attachment(scene, value, part.where, f"{name}: ")
                                    for name, value in attachments.items()}) if attachments else part
 

@@ -36,6 +36,10 @@ class Quantity:
             raise ValueError(f"{self.long_name}: a quantity over {self.dims} does not turn as {self.turns!r}; give one "
                              f"of {', '.join(TURNS[1:])} for a vector, and nothing for a number")
 
+    def dims_of(self, part: str) -> tuple[str, ...]:
+        """Return the dimensions of the quantity of a part of this name."""
+        return tuple([dim.format(part=part) if "{" in dim else dim for dim in self.dims])
+
 
 def of_time(units: str, long_name: str) -> Quantity:
     """Return a quantity of one number at each time."""

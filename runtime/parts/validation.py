@@ -64,6 +64,9 @@ def items(value: Any, least: int, most: float = math.inf) -> list[Any] | None:
     return [*value] if isinstance(value, list | tuple) and least <= len(value) <= most else None
 
 
+_FLOATS = frozenset({float})
+
+
 def _real(value: Any) -> float:
     if type(value) is float:  # a tenth of the time of the check below
         return value
@@ -96,7 +99,7 @@ def vector(value: Any, unit: str = "", size: int = 3) -> tuple[float, ...]:
     """Return ``value`` as ``size`` finite floats within `LIMITS`. Raises ValueError."""
     if (given := items(value, size, size)) is None:
         raise ValueError(f"must be {size} numbers, got {shown(value)}")
-    numbers = tuple(map(_real, given))
+    numbers = tuple(given if _FLOATS.issuperset(map(type, given)) else map(_real, given))
     largest = LIMITS.get(unit, OTHER_LIMITS)[1]
     for each in numbers:
         if not -largest <= each <= largest:
@@ -170,7 +173,19 @@ def bounded(unit: str, allowed: Callable[[float], bool], rule: str, **bounds: fl
 
 def finite(unit: str = "") -> Check:
     """Return the check of a finite number."""
-    return checked(lambda value: number(value, unit), number_schema(unit))
+    return checked(_floats_within(-LIMITS.get(unit, OTHER_LIMITS)[1], number, unit), number_schema(unit))
+
+
+def _floats_within(least: float, otherwise: Callable[[Any, str], float], unit: str) -> Callable[[Any], float]:
+    """Return the check that passes floats from ``least`` to the limit of their unit, and leaves all other values to
+    another one.
+    """
+    largest = LIMITS.get(unit, OTHER_LIMITS)[1]
+
+    def check(value: Any) -> float:
+        return value if type(value) is float and least <= value <= largest else otherwise(value, unit)
+
+    return check
 
 
 def positive_number(value: Any, unit: str = "") -> float:
@@ -184,7 +199,8 @@ def positive_number(value: Any, unit: str = "") -> float:
 
 def positive(unit: str = "") -> Check:
     """Return the check of a finite number above 0 and within `LIMITS`."""
-    return checked(lambda value: positive_number(value, unit), number_schema(unit, exclusiveMinimum=0))
+    least = LIMITS.get(unit, OTHER_LIMITS)[0]
+    return checked(_floats_within(least, positive_number, unit), number_schema(unit, exclusiveMinimum=0))
 
 
 def not_negative(unit: str = "") -> Check:
@@ -225,7 +241,7 @@ def direction(of: str | None = None, turns: str = DIRECTION, *, lies: bool = Tru
 
 def place_on(of: str, *, moves: bool = False) -> Check:
     """Return the check of an arc-length in m along the cable that the attribute ``of`` names, see `Place`."""
-    return checked(lambda value: number(value, "m"), number_schema("m"), Place(of, moves))
+    return checked(_floats_within(-LIMITS["m"][1], number, "m"), number_schema("m"), Place(of, moves))
 
 
 def list_of(unit: str = "", *, least: int) -> Check:

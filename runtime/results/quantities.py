@@ -70,8 +70,7 @@ def labelled(rows: Any) -> dict[str, Variable]:
         for name, arrays in parts.items():
             for quantity, values in arrays.items():
                 of = QUANTITIES[group][quantity]
-                of_part = tuple(dim.format(part=name) for dim in of.dims)
-                variables[f"{name}.{quantity}"] = Variable(of_part, values, of.units, of.long_name)
+                variables[f"{name}.{quantity}"] = Variable(of.dims_of(name), values, of.units, of.long_name)
     for name, values in rows.energy.items():
         variables[f"energy.{name}"] = Variable(("time",), values, "J", ENERGIES[name])
     return variables

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 import threading
+from collections.abc import Iterable
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ...base.lapack import WHEN_LOADED
 
 if TYPE_CHECKING:
-    from threadpoolctl import ThreadpoolController
+    from threadpoolctl import LibController
 
     from ...engine import Engine
 
@@ -49,7 +50,7 @@ class _OneBlasThread:
 
     def _reset(self) -> None:
         self._lock, self._inside = threading.Lock(), 0
-        self._limiter: Any = None
+        self._held: list[tuple[LibController, int]] = []
 
     def __enter__(self) -> None:
         with self._lock:
@@ -72,17 +73,22 @@ class _OneBlasThread:
                 self._limit()
 
     def _limit(self) -> None:
-        blas = _blas()
-        if any(library.num_threads != 1 for library in blas.lib_controllers):
-            _let_this_thread_set_limits()
-            self._limiter = blas.limit(limits=1)
+        threads = [(library, library.num_threads) for library in _blas()]
+        self._held = [each for each in threads if each[1] != 1]
+        self._set((library, 1) for library, _ in self._held)
 
     def _release(self) -> None:
-        if self._limiter is not None:
-            _let_this_thread_set_limits()
-            self._limiter.restore_original_limits()
+        if self._held:
+            self._set(self._held)
             _let_this_thread_set_limits()  # and who had set limits before
-            self._limiter = None
+            self._held = []
+
+    def _set(self, threads: Iterable[tuple[LibController, int]]) -> None:
+        """Set the threads of libraries."""
+        if self._held:
+            _let_this_thread_set_limits()
+            for library, number in threads:
+                library.set_num_threads(number)
 
 
 one_blas_thread = _OneBlasThread()
@@ -100,7 +106,7 @@ def _let_this_thread_set_limits() -> None:
 
 
 @cache
-def _blas() -> ThreadpoolController:
+def _blas() -> list[LibController]:
     from threadpoolctl import ThreadpoolController  # for runs alone
 
-    return ThreadpoolController().select(user_api="blas")
+    return list(ThreadpoolController().select(user_api="blas").lib_controllers)

@@ -88,7 +88,7 @@ class CoarseSlides(Note):
 
     def _stiffness(self, slide: SlideModel) -> LineStiffness:
         """Return the least stiffness along the line of a slide."""
-        return LineStiffness(*map(np.min, LineStiffness.of(self._line(slide), self.model.dim)))
+        return LineStiffness.of(self._line(slide), self.model.dim).least
 
     def notes(self) -> list[str]:
         """Return a note for each slide with a large mean error."""

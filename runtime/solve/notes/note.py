@@ -89,6 +89,11 @@ class LineStiffness(NamedTuple):
             return each[0]
         return cls(*np.repeat(each, [piece.end - piece.first for piece in pieces], axis=0).T)
 
+    @property
+    def least(self) -> LineStiffness:
+        """Return the least of each along a cable or rope."""
+        return self if isinstance(self.mass, float) else LineStiffness(*map(np.min, self))
+
     @classmethod
     def _of(cls, section: Section, material: Material, dim: int) -> LineStiffness:
         E, (area, *bending) = material.youngs_modulus, section.moments().tolist()

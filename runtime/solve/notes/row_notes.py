@@ -67,7 +67,7 @@ class RowNotes:
 
     def __getitem__(self, kind: type[N]) -> N | None:
         """Return the note of a class, None where the scene has nothing that it measures."""
-        return cast(N | None, self._notes.get(kind))
+        return cast("N | None", self._notes.get(kind))
 
     def see(self, engine: Engine) -> None:
         """Measure the rows that the engine has, and the ends of its steps."""
