@@ -33,7 +33,7 @@ def placed_branch(scene: SceneData, part: Branch) -> Branch:
             f"{cable.where} resists tension alone, and a branch would push",
             'take the membrane "full" or "assumed"',
         )
-    if cable.temperature is not None or cable.growth.signal is not None:
+    if cable.temperature is not None or cable.grows:
         raise SceneError(
             part.where,
             f"{cable.where} has a temperature or a rest_length that changes, which the branch would take for strain",

@@ -54,6 +54,14 @@ class Mesh:
         return self.lengths[0] * np.arange(self.n_elements + 1) if self.given is None else self.given
 
     @cached_property
+    def element_of_node(self) -> np.ndarray:
+        """Return (nodes,): the element that begins at each node, or the last one."""
+        elements = np.full(self.n_nodes, -1)
+        elements[self.last] = np.arange(self.n_elements)
+        elements[self.first] = np.arange(self.n_elements)
+        return elements
+
+    @cached_property
     def boundary_of_node(self) -> np.ndarray:
         """Return (nodes,): the number of the boundary at which each node is."""
         return np.insert(np.arange(self.n_elements + 1), np.array(self.doubled, dtype=int), self.doubled)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from itertools import chain
 from typing import Any
 
@@ -18,20 +18,29 @@ GROWTH_POWERS = {"r": 1.0, "r_xx": -1.0}
 """Powers of the growth factor of the vectors of a stress-free shape."""
 POINTS = 5
 """Gauss points along an element: exact for a straight stress-free shape, of the eighth degree."""
+DIFFERENCE = 1e-3
+"""Step of differences by a growth factor, over the least factor: of the sixth order, they are exact to rounding."""
+POLE, MORE_TERMS = 0.25, 4
+"""Factor over the least one beyond which no law's constants have a pole, but for 0 those of straight beams; terms of a
+series beyond those of a simple pole."""
 PLANAR = 4
 """Elastic constants of a planar continuum; a spatial one has nine."""
 
 
-def constants(cable: Cable, axial: float = 1.0,
-              change: Callable[[np.ndarray], np.ndarray] | None = None) -> np.ndarray:
+def constants(cable: Cable, axial: float = 1.0, change: Callable[[np.ndarray], np.ndarray] | None = None,
+              growth: Sequence[float] | None = None) -> np.ndarray:
     """Return (elements, n), or (1, n) for equal elements with a straight stress-free shape.
 
-    axial: a factor of EA, of a cable's law alone; change: of the stiffness of a section.
+    axial: a factor of EA, of a cable's law alone; change: of the stiffness of a section; growth: factors of the
+    stress-free lengths of the pieces, by default those at t = 0.
     """
-    growth, reference = cable.growth.start, cable.reference
-    lengths = growth * (cable.mesh.all_lengths if cable.is_curved and reference is not None else cable.mesh.lengths)
-    if reference is not None and growth != 1.0:
-        reference = grown_shape(cable, reference, np.array(growth))
+    growth = [each.start for each in cable.growth] if growth is None else growth
+    ends = [piece.end - piece.first for piece in cable.uniform_pieces]
+    factors, reference = np.repeat(growth, ends), cable.reference
+    each_own = (cable.is_curved and reference is not None) or not cable.mesh.is_even
+    lengths = factors * cable.mesh.all_lengths if each_own else growth[0] * cable.mesh.lengths
+    if reference is not None and any(factor != 1.0 for factor in growth):
+        reference = grown_shape(cable, reference, factors)
     sections = [section_stiffness(cable.stiffness_law, piece.section, piece.material, cable.dim)
                 for piece in cable.uniform_pieces]
     if axial != 1.0:  # of EA, EI, and EA of the upper modes of an assumed strain
@@ -44,6 +53,30 @@ def constants(cable: Cable, axial: float = 1.0,
                             for piece, S in zip(cable.uniform_pieces, sections, strict=True)))
     return np.array([element_constants(cable.library, cable.element, cable.kernel_law, float(length), S, e0)
                      for length, S, e0 in zip(lengths, each, shapes, strict=True)])
+
+
+def series(cable: Cable) -> np.ndarray:
+    """Return (1 or elements, 3 + terms n): `constants` as Chebyshev polynomials of the growth factors between the
+    bounds of their signals, to rounding (Trefethen, Approximation Theory and Approximation Practice, ch. 3 and 8).
+
+    First come the middle of the factors, the inverse of half their range, and the step of differences by a factor,
+    three of which lie beyond the bounds.
+    """
+    step = [DIFFERENCE * driven.least for driven in cable.growth]
+    low = np.array([driven.least - 4 * h for driven, h in zip(cable.growth, step, strict=True)])
+    high = np.array([driven.greatest + 4 * h for driven, h in zip(cable.growth, step, strict=True)])
+    pole = float(((low + high - 2 * POLE * low) / (high - low)).min())
+    terms = MORE_TERMS + int(np.log(1 / np.finfo(float).eps) / np.log(pole + np.sqrt(pole**2 - 1)))
+    angles = np.pi * (np.arange(terms) + 0.5) / terms
+    each = np.array([constants(cable, growth=((low + high) / 2 + (high - low) / 2 * x).tolist())
+                     for x in np.cos(angles)])
+    weights = 2 / terms * np.cos(np.outer(np.arange(terms), angles))
+    weights[0] /= 2
+    found = np.tensordot(weights, each, 1)
+    head = np.stack([(low + high) / 2, 2 / (high - low), step], axis=1)
+    ends = [piece.end - piece.first for piece in cable.uniform_pieces]
+    head = head[:1] if found.shape[1] == 1 else np.repeat(head, ends, axis=0)
+    return np.concatenate([head, np.moveaxis(found, 1, 0).reshape(len(head), -1)], axis=1)
 
 
 def grown_shape(cable: Cable, shape: np.ndarray, growth: np.ndarray) -> np.ndarray:

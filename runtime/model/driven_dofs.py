@@ -16,6 +16,7 @@ from ..parts.cable import Cable
 from ..parts.driven import GROWTH, Driven
 from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
+from .constants import series
 from .model import CableModel, MotionModel
 from .signals import Signals
 
@@ -39,13 +40,16 @@ class DrivenDofs:
     def let_grow(self, cables: Iterable[CableModel], scene: SceneData) -> int:
         """Give the cables of a scene the dofs of their growth factors; return `stop`."""
         for cable, part in zip(cables, scene.cables.values(), strict=True):
-            driven = self.driven.get((part.where, GROWTH))
-            if driven is None:
+            if (part.where, GROWTH) not in self.driven:
                 continue
-            cable.growth = self.dofs[part.where, GROWTH]
-            if driven.signal is not None:
+            dofs = [self.dofs[part.where, name] for name in part.names_of_growth]
+            cable.growth = dofs[0]
+            cable.pieces = tuple(piece._replace(growth=dof) for piece, dof in zip(cable.pieces, dofs, strict=True))
+            if part.grows and part.kind_of_element.is_cable:
                 cable.growth_constants = cable.A.copy()
                 cable.growth_constants[:, BENDING] *= -1
+            elif part.grows:
+                cable.growth_series = series(part)
         return self.stop
 
     @property

@@ -69,13 +69,15 @@ class CablePiece(NamedTuple):
     """Elements of a cable, up to that of the number `end`, with one Kelvin-Voigt retardation time tau in s and one
     mass_damping in 1/s.
 
-    doubled: nodes before them that the cable has twice.
+    doubled: nodes before them that the cable has twice; growth: dof of the growth factor of their stress-free length,
+    -1 for none.
     """
 
     end: int
     tau: float
     mass_damping: float
     doubled: int = 0
+    growth: int = -1
 
 
 @dataclass(eq=False, repr=False)
@@ -84,8 +86,9 @@ class CableModel:
 
     pieces: in their order. m: (1 or elements, nodal vectors, nodal vectors) of an element; A: (1 or elements,
     constants). share: (vectors,) `Hull.share`, None where no coupling needs it. growth: dof of the growth factor of the
-    stress-free length, -1 for none; growth_constants: A with negative bending stiffness, where a signal prescribes it
-    (engine/bodies/growth.c). gives_way: whether it resists hardly in compression.
+    stress-free length of the first piece, -1 for none. Where a signal prescribes it (engine/bodies/growth.c),
+    growth_constants: A with negative bending stiffness, of laws of cables, and growth_series: (1 or elements, numbers)
+    `constants.series`, of others. gives_way: whether it resists hardly in compression.
     """
 
     name: str
@@ -102,6 +105,7 @@ class CableModel:
     share: np.ndarray | None = None
     growth: int = -1
     growth_constants: np.ndarray | None = None
+    growth_series: np.ndarray | None = None
     gives_way: bool = False
 
     @property
@@ -146,13 +150,26 @@ class CableModel:
         return orders_of(self.vectors)
 
     def growth_in(self, q: np.ndarray) -> np.ndarray:
-        """Return the growth factor in configurations q (..., n): (...)."""
-        return np.ones(q.shape[:-1]) if self.growth < 0 else q[..., self.growth]
+        """Return the growth factor of its elements in configurations q (..., n): (..., elements)."""
+        if self.growth < 0:
+            return np.ones((*q.shape[:-1], self.n_elements))
+        return q[..., self.of_elements(lambda piece: piece.growth)]
+
+    def constants_with(self, growth: np.ndarray, element: int) -> np.ndarray:
+        """Return the constants of an element with growth factors (T,): (constants,), or (T, constants) where they
+        depend on it.
+        """
+        if self.growth_series is None:
+            return np.asarray(self.A[element % len(self.A)])
+        middle, scale, _, *series = self.growth_series[element % len(self.growth_series)]
+        angle = np.arccos(np.clip((growth - middle) * scale, -1.0, 1.0))
+        terms = np.reshape(series, (-1, self.A.shape[1]))
+        return np.asarray(np.cos(angle[:, None] * np.arange(len(terms))) @ terms)
 
     def strained(self, q: np.ndarray) -> np.ndarray:
         """Return `nodal` over the growth factor: the stretch of the centreline is the length of its slope."""
         vectors = self.nodal(q)
-        return vectors if self.growth < 0 else vectors / self.growth_in(q)[..., None, None, None]
+        return vectors if self.growth < 0 else vectors / self.growth_in(q)[..., self.mesh.element_of_node, None, None]
 
     def nodal(self, q: np.ndarray) -> np.ndarray:
         """Return its part of coordinates, rates or numbers of dofs (..., n) as (..., nodes, vectors, dim)."""

@@ -21,6 +21,9 @@ from .section_stiffness import kernel_law
 from .signal import Signal
 from .validation import LENGTH_TOLERANCE, show, shown
 
+MAX_GROWTH_RANGE = 4.0
+"""Of the stress-free lengths of a beam, up to which series of the constants of its law end."""
+
 
 class Cable(DrawnCable, CableFields):
     """A cable of elements, drawn straight, through points or along a curve.
@@ -68,10 +71,10 @@ class Cable(DrawnCable, CableFields):
         section axes: the height is then along the ground's axis most nearly across
     rest: undeformed shape, "drawn" or "straight"
     rest_length: undeformed length, m, by default the drawn length. A shorter one makes the drawn cable taut, a longer
-        one slack, or compressed where it is straight. Of a cable element also a signal, as of a tendon or a turnbuckle:
-        s and mass are those at t = 0, and the work is in ``energy.external``
-    temperature: above that of the stress-free state, K, a number, of a cable element also a signal; by default that of
-        the scene. By ``thermal_expansion`` of the material it lengthens the stress-free cable along its axis. Mass,
+        one slack, or compressed where it is straight. Also a signal, as of a tendon or a turnbuckle: s and mass are
+        those at t = 0, and the work is in ``energy.external``
+    temperature: above that of the stress-free state, K, a number or a signal; by default that of the scene. By
+        ``thermal_expansion`` of the material of each piece it lengthens the stress-free cable along its axis. Mass,
         section and stiffness stay as given, and s is that at 0 K
     velocity: initial velocity of the first point, m/s; the cable moves as a rigid body, except at its supports
     angular_velocity: initial angular velocity about the first point, rad/s, along the ground's axes
@@ -196,24 +199,26 @@ class Cable(DrawnCable, CableFields):
     def check_growth(self) -> None:
         """Raise ValueError(cause, remedy) where its stress-free length cannot grow as given."""
         warm, growth = self.temperature, self.growth
-        expansions = {piece.material.thermal_expansion for piece in self.uniform_pieces}
-        if warm is not None and warm != 0.0 and None in expansions:
+        if warm is not None and warm != 0.0 and None in {
+                piece.material.thermal_expansion for piece in self.uniform_pieces}:
             raise ValueError("has a temperature, but its material has no thermal_expansion",
                              "give the material one, 0 for a cable that keeps its length")
-        if warm is not None and warm != 0.0 and len(expansions) > 1:
-            raise ValueError("has a temperature, and pieces of several thermal_expansion", "give all pieces one, or a "
-                             "cable to each piece and join them by ties")
-        if isinstance(self.rest_length, Signal) and growth.signal is not self.rest_length:
+        if isinstance(self.rest_length, Signal) and growth[0].signal is not self.rest_length:
             raise ValueError("has signals for rest_length and temperature", "give one of them as a number")
-        if not growth.least > 0:
-            raise ValueError(f"the stress-free length must stay positive, got {growth.least:.6g} times the length at "
+        if not (least := min(each.least for each in growth)) > 0:
+            raise ValueError(f"the stress-free length must stay positive, got {least:.6g} times the length at "
                              "0 K", "give temperature in K above the stress-free state, thermal_expansion in 1/K")
-        if growth.signal is None or (self.is_open and "element" not in self.model_fields_set):
+        if not self.grows or (self.is_open and "element" not in self.model_fields_set):
             return
-        if self.library is not None or not self.kind_of_element.is_cable:
-            name = "rest_length" if growth.signal is self.rest_length else "temperature"
-            raise ValueError(f"{name} is a signal, but {self.element} takes a number alone, for which the constants of "
-                             "its law are made", "give a number, or take " + others(self.dim, cable=True))
+        name = "rest_length" if growth[0].signal is self.rest_length else "temperature"
+        if self.library is not None:
+            raise ValueError(f"{name} is a signal, but {self.element} of a library takes a number alone, for which the "
+                             "constants of its law are made", "give a number, or take " + others(self.dim, cable=True))
+        if not self.kind_of_element.is_cable and any(
+                each.greatest > MAX_GROWTH_RANGE * each.least for each in growth):
+            raise ValueError(f"the largest stress-free length by the signal of {name} is more than "
+                             f"{MAX_GROWTH_RANGE:g} times the smallest, too much for the constants of the law of "
+                             f"{self.element}", "give less, or take " + others(self.dim, cable=True))
 
     @model_validator(mode="after")
     def _law_suits(self) -> "Cable":

@@ -60,10 +60,13 @@ class DrawnCable(Fields):
         return 1.0 if self.rest_length is None and self.pieces is None else self.drawn_length / self.length
 
     @property
-    def growth(self) -> Driven:
-        """Return the factor of its stress-free length, by its temperature and by a signal for the length."""
+    def growth(self) -> tuple[Driven, ...]:
+        """Return the factor of the stress-free length of each piece, by temperature and by a signal for the length."""
+        return tuple(self._growth_of(piece.material.thermal_expansion or 0.0) for piece in self.uniform_pieces)
+
+    def _growth_of(self, expansion: float) -> Driven:
+        """Return the factor of the stress-free length of a material with this thermal expansion, 1/K."""
         warm = 0.0 if self.temperature is None else self.temperature
-        expansion = self.uniform_pieces[0].material.thermal_expansion or 0.0
         if isinstance(warm, Signal) and expansion != 0.0:
             return Driven(warm, 1.0, expansion)
         by_heat = 1.0 + expansion * at_start(warm)
@@ -71,16 +74,30 @@ class DrawnCable(Fields):
             return Driven(self.rest_length, 0.0, by_heat / self.length)
         return Driven(None, by_heat)
 
-    def growth_at(self, time: ArrayLike) -> np.ndarray:
-        """Return `growth` at times of any shape, in s."""
-        driven = self.growth
-        return driven.base + driven.linear * (np.zeros(np.shape(time)) if driven.signal is None
-                                              else driven.signal.value(time))
+    @property
+    def grows(self) -> bool:
+        """Return whether a signal prescribes its stress-free length."""
+        return any(each.signal is not None for each in self.growth)
+
+    def growth_at(self, time: np.ndarray) -> np.ndarray:
+        """Return (T, elements): `growth` of its elements at times (T,) in s."""
+        ends = [piece.end - piece.first for piece in self.uniform_pieces]
+        return np.repeat(np.stack([each.at(time) for each in self.growth], axis=1), ends, axis=1)
 
     def driven(self) -> dict[str, Driven]:
-        """Return the quantities that signals prescribe, by name: its growth unless that is constantly 1."""
-        driven = self.growth
-        return {} if driven.signal is None and driven.base == 1.0 else {GROWTH: driven}
+        """Return the quantities that signals prescribe, by name: the growth of its pieces, or of all of them if it is
+        the same, unless that is constantly 1.
+        """
+        each = self.growth
+        if all(driven.signal is None and driven.base == 1.0 for driven in each):
+            return {}
+        return {name: driven for name, driven in zip(self.names_of_growth, each, strict=True)}
+
+    @property
+    def names_of_growth(self) -> list[str]:
+        """Return the names of `growth` of its pieces."""
+        each = self.growth
+        return [GROWTH if driven == each[0] else f"{GROWTH} {k}" for k, driven in enumerate(each, start=1)]
 
     @property
     def is_curved(self) -> bool:
@@ -136,14 +153,15 @@ class DrawnCable(Fields):
     @property
     def doubled(self) -> tuple[int, ...]:
         """Return the elements that begin at a node of their own, see `Mesh`: those of a piece at a hinge, or whose
-        strain under the forces of the piece before it is another one.
+        strain under the forces of the piece before it, or by heat, is another one.
         """
         pieces = self.uniform_pieces
         stiffness = [section_stiffness(self.stiffness_law, piece.section, piece.material, self.dim) for piece in pieces]
         if self.kind_of_element.is_cable:
             stiffness = [np.delete(S, 1) for S in stiffness]  # EI
-        return tuple(piece.first for piece, before, own in zip(pieces[1:], stiffness, stiffness[1:], strict=False)
-                     if piece.hinge or not np.array_equal(before, own))
+        expansion = [piece.material.thermal_expansion or 0.0 for piece in pieces]
+        return tuple(piece.first for k, piece in enumerate(pieces[1:]) if piece.hinge
+                     or expansion[k] != expansion[k + 1] or not np.array_equal(stiffness[k], stiffness[k + 1]))
 
     @property
     def hinges(self) -> tuple[int, ...]:

@@ -1,8 +1,16 @@
 """Quantities of parts that a signal prescribes."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from .signal import Signal, at_start, extremes
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike  # for type checkers alone
 
 GROWTH = "growth"
 """The factor of the stress-free length of a cable."""
@@ -27,3 +35,15 @@ class Driven:
         if self.signal is None:
             return self.base
         return min(self.base + self.linear * value for value in extremes(self.signal))
+
+    @property
+    def greatest(self) -> float:
+        """Return an upper bound of it over all times."""
+        if self.signal is None:
+            return self.base
+        return max(self.base + self.linear * value for value in extremes(self.signal))
+
+    def at(self, time: ArrayLike) -> np.ndarray:
+        """Return its values at times of any shape, in s."""
+        found = np.zeros(np.shape(time)) if self.signal is None else self.signal.value(time)
+        return np.asarray(self.base + self.linear * found)

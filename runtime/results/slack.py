@@ -27,7 +27,7 @@ def slack_elements(state: Recorded | RestState, cable: Cable | str) -> xarray.Da
     of = next(each for each in state.model.cables if each.name == name)
     vectors = state[f"{name}.nodal_vectors"]
     growth = state.scene.cables[name].growth_at(np.zeros(1) if isinstance(state, RestState) else state.time)
-    vectors = (vectors if over_time else vectors[None]) / growth[:, None, None, None]
+    vectors = (vectors if over_time else vectors[None]) / growth[:, of.mesh.element_of_node, None, None]
     slack = middle_strain(of, vectors) < -SLACK_STRAIN
     s = of.mesh.boundaries
     middle = {"units": "m", "long_name": "middle of the element"}

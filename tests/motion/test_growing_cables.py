@@ -11,6 +11,7 @@ GROWTH = 1 + WARM * EXPANSION
 MATERIAL = {"youngs_modulus": 1e9, "poisson_ratio": 0.3, "density": 1000.0, "thermal_expansion": EXPANSION}
 SHORTER = fu.Ramp(start=0.02, end=0.12, before=1.0, after=0.9)
 COOLER = fu.Ramp(start=0.02, end=0.12, before=0.0, after=-100.0)
+COOLING = {"temperature": fu.Ramp(start=0.0, end=0.04, before=0.0, after=-50.0)}
 METHODS = {"genalpha": {"tol": 1e-6}, "radau": {"tol": 1e-7}, "explicit": {"tol": 1e-7}, "energy": {"step": 2e-4},
            "dissipating": {"step": 2e-4, "integrator": "energy", "spectral_radius": 0.8}}
 
@@ -99,6 +100,38 @@ def test_free_expansion_is_free_of_stress(element, law, curved):
     assert run["energy.elastic"].max() < 1e-20
 
 
+STIFF, EXPANSIONS = (2e9, 1e9), (1.2e-5, 2.4e-5)
+
+
+def two_materials(element: str, law: str | None, temperature: object, held: bool = True, **given) -> fu.Scene:
+    """Return a bar of 1 m and 0.5 m of two materials, clamped at its start, and at its end if held."""
+    scene = fu.Scene(gravity=(0, 0, 0))
+    pieces = [fu.Piece(length=length, section=fu.Circle(radius=0.01), elements=2, material=fu.Material(
+        youngs_modulus=E, poisson_ratio=0.0, density=1000.0, thermal_expansion=expansion, **given))
+        for length, E, expansion in zip((1.0, 0.5), STIFF, EXPANSIONS, strict=True)]
+    scene.cable("bar", start=(0, 0, 0), end=(1.5, 0, 0), element=element, law=law, temperature=temperature,
+                pieces=pieces, strain=None if law else "engineering")
+    for s in (0, 1.5)[: 1 + held]:
+        scene.clamp("bar", s=s)
+    return scene
+
+
+@pytest.mark.parametrize("warm", [-50.0, 0.5])
+@pytest.mark.parametrize(("element", "law"), [("cable12", None), ("cable8p", None), ("cable18", None),
+                                              ("beam24", "structural"), ("beam12p", "structural")])
+def test_a_bar_of_two_materials(element, law, warm):
+    """N = -dT (a1 L1 + a2 L2) / (L1/EA1 + L2/EA2), where the lengths below are those at the temperature."""
+    grown = [length * (1 + warm * each) for length, each in zip((1.0, 0.5), EXPANSIONS, strict=True)]
+    soft = [length / (E * np.pi * 1e-4) for length, E in zip(grown, STIFF, strict=True)]
+    rest = two_materials(element, law, warm).equilibrium(seek_stable=False)
+    for method in ("balance", "constitutive"):
+        tension = rest.section_forces("bar", s=[0.2, 0.9, 1.3], method=method).tension.values
+        assert tension == pytest.approx((1.5 - sum(grown)) / sum(soft), rel=1e-10)
+    free = two_materials(element, law, warm, held=False).equilibrium()
+    assert free["bar.position"][-1, 0] == pytest.approx(sum(grown), abs=1e-14)
+    assert np.abs(free.section_forces("bar").force).max() < 1e-8  # of EA = 6e5 N
+
+
 @pytest.mark.parametrize(("element", "law"), [("cable12", None), ("cable8p", None), ("beam24", "structural"),
                                               ("beam24", "continuum"), ("beam12p", "poisson_split")])
 def test_a_held_bar_is_compressed(element, law):
@@ -134,8 +167,9 @@ def tendon(damping_time: float = 0.0, **given) -> fu.Scene:
     scene = fu.Scene()
     drawn = {} if "points" in given else {"start": (0, 0, 0), "end": (1, 0, 0)}
     soft = {**MATERIAL, "youngs_modulus": 2e6, "thermal_expansion": 1e-3, "damping_time": damping_time}
-    scene.cable("tendon", elements=6, section=fu.Circle(radius=5e-3), material=fu.Material(**soft),
-                **{"element": "cable12", "rest_length": SHORTER, **drawn, **given})
+    uniform = {} if "pieces" in given else {"elements": 6, "section": fu.Circle(radius=5e-3), "rest_length": SHORTER,
+                                            "material": fu.Material(**soft)}
+    scene.cable("tendon", **{"element": "cable12", **uniform, **drawn, **given})
     scene.pin("tendon", s=0)
     scene.pin("tendon", s=1)
     middle = scene.cables["tendon"].point(0.5) - (0, 0.2, 0)
@@ -162,6 +196,45 @@ def test_the_work_of_growth_is_external(law):
         assert imbalance(run) < {"energy": 1e-13, "dissipating": 1e-13, "explicit": 1e-7}.get(method, 1e-5) * work
         places.append(run["mass.position"])
     assert max(np.abs(each - places[2]).max() for each in places) < 3e-6
+
+
+TWO = [fu.Piece(length=0.5, section=fu.Circle(radius=5e-3), elements=3, material=fu.Material(
+    youngs_modulus=2e6, poisson_ratio=0.3, density=1000.0, damping_time=1e-3, thermal_expansion=expansion))
+    for expansion in (1e-3, 5e-4)]
+BEAMS = {
+    "continuum": ({"element": "beam12p"}, ["genalpha", "radau", "explicit", "energy", "dissipating"]),
+    "structural": ({"element": "beam12p", "law": "structural"}, ["genalpha", "radau", "explicit"]),
+    "curved structural": ({**LAWS["curved"], "element": "beam24", "law": "structural"}, ["radau"]),
+    "curved continuum": ({**LAWS["curved"], "element": "beam12p", "damping_time": 1e-3}, ["radau", "energy"]),
+    "in space": ({"element": "beam24", "damping_time": 1e-3, "rest_length": 1.0, **COOLING}, ["radau", "energy"]),
+    "pieces": ({"pieces": TWO, **COOLING}, ["genalpha", "radau", "explicit"]),
+    "pieces of a beam": ({"pieces": TWO, **COOLING, "element": "beam12p", "law": "structural"}, ["radau"]),
+}
+
+
+@pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
+@pytest.mark.parametrize("law", BEAMS)
+def test_the_work_of_growth_of_beams_and_pieces_is_external(law):
+    given, methods = BEAMS[law]
+    scene = tendon(**given)
+    for method in methods:
+        run = scene.run(duration=0.04, output_step=0.01, **{"integrator": method, **METHODS[method]})
+        work = np.ptp(run["energy.external"])
+        assert work > 1e-4
+        assert imbalance(run) < {"energy": 3e-12, "dissipating": 3e-12, "explicit": 1e-9}.get(method, 1e-5) * work
+
+
+@pytest.mark.parametrize(("element", "law"), [("beam12p", "structural"), ("beam12p", "continuum"),
+                                              ("beam24", "continuum"), ("cable12", None)])
+def test_a_signal_ends_at_the_state_of_its_last_number(element, law):
+    """Beams and pieces that a signal has cooled rest as those that are cold: constants of the laws at each instant."""
+    scene = two_materials(element, law, fu.Ramp(start=0.0, end=0.01, before=0.0, after=-40.0), damping_time=5e-4)
+    run = scene.run(duration=0.05, output_step=0.05, tol=1e-6, integrator="radau", absolute_tol=1e-10)
+    rest = two_materials(element, law, -40.0).equilibrium()
+    for method in ("balance", "constitutive"):
+        found, cold = (each.section_forces("bar", s=[0.2, 1.3], method=method).tension.values for each in (run, rest))
+        assert found[-1] == pytest.approx(cold, rel=1e-5)
+    assert run["bar.position"][-1] == pytest.approx(rest["bar.position"], abs=1e-8)
 
 
 def test_a_turnbuckle_pulls_its_line_taut():
@@ -217,9 +290,10 @@ def test_refusals():
     with refused('cable "line": the stress-free length must stay positive, got -0.2 times the length at 0 K; give '
                  "temperature in K above the stress-free state, thermal_expansion in 1/K"):
         string(-1e5)
-    with refused('cable "body": temperature is a signal, but beam24 takes a number alone, for which the constants of '
-                 'its law are made; give a number, or take element="cable12" or "cable18"'):
-        warm("beam24", "structural", False, temperature=COOLER)
+    with refused('cable "body": the largest stress-free length by the signal of rest_length is more than 4 times the '
+                 'smallest, too much for the constants of the law of beam24; give less, or take element="cable12" or '
+                 '"cable18"'):
+        warm("beam24", "structural", False, temperature=0.0, rest_length=fu.Ramp(start=0, end=1, before=1, after=0.2))
     with refused('cable "line": has signals for rest_length and temperature; give one of them as a number'):
         string(0.0).replace("line", temperature=COOLER, rest_length=SHORTER)
     with refused('cable "line": rest_length must be positive, got 0 m, the least value of the signal'):

@@ -139,7 +139,7 @@ def test_the_energy_scheme_takes_pieces_that_share_slopes():
     energy = sum(np.asarray(run[f"energy.{name}"]) for name in ("kinetic", "elastic", "potential"))
     assert np.ptp(energy) < 1e-10 * np.abs(energy).max()
     with refused('cable "w": integrator "energy" has no discrete gradient of the joint of its pieces; give them one '
-                 "axial stiffness, or take another integrator"):
+                 "axial stiffness and thermal_expansion, or take another integrator"):
         taut("cable8p").run(duration=0.01, step=1e-3, output_step=0.01, integrator="energy")
 
 

@@ -9,6 +9,8 @@
 #include <stddef.h>
 
 #define FU_MAX_COORDINATES 32        /* of one element, or of the kernels of a slide on it; model/build.py checks */
+#define FU_MAX_CONSTANTS 512         /* of a law on an element whose growth a signal prescribes */
+#define FU_SERIES_HEAD 3             /* numbers of an element before the series of these constants */
 #define FU_ATTACHMENT_COORDINATES 40 /* of the carrier of an attachment, s included; model/build.py checks */
 #define FU_SLIDE_COORDINATES (FU_MAX_COORDINATES + FU_ATTACHMENT_COORDINATES)
 #define FU_ROW_COORDINATES (2 * (FU_ATTACHMENT_COORDINATES + FU_SLIDE_COORDINATES))

@@ -10,6 +10,7 @@ typedef struct {
     int first;           /* entry in q of the element 0 if it were of this piece */
     double tau;          /* Kelvin-Voigt retardation time, s */
     double mass_damping; /* 1/s */
+    int growth;          /* dof of the growth factor of its stress-free length, -1 for none (bodies/growth.c) */
 } fu_cable_piece;
 
 typedef struct {
@@ -33,12 +34,15 @@ typedef struct {
     /* of each vector of a node: largest displacement of points of its elements by a unit of it; null if unknown */
     const double *share;
     int tension_only; /* nonzero for a law with reduced stiffness in compression */
-    /* dof of the growth factor of the stress-free length, -1 for none (bodies/growth.c); orders of the derivatives by
-     * the arc-length of the vectors of a node; constants of the law as A, with negative bending stiffness, null where
-     * no signal prescribes the growth */
-    int growth;
+    /* growth of the stress-free length (bodies/growth.c): the dof of the first piece, -1 for none; nonzero where
+     * signals prescribe it; orders of the derivatives by the arc-length of the vectors of a node */
+    int growth, grows;
     const int *orders;
+    /* constants of the law as A, with negative bending stiffness, of laws of cables whose growth signals prescribe */
     const double *growth_constants;
+    /* of other laws: their constants, A_size of an element, in `terms` Chebyshev polynomials of the growth factors */
+    int A_size, terms;
+    const double *growth_series;
     int dissipation_state; /* first number in a state's of algorithmic dissipation: law->rates + 1 an element */
 } fu_cable;
 

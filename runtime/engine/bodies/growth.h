@@ -4,16 +4,24 @@
 
 #include "bodies/cables.h"
 
-/* An element as its law takes it: growth factor, its rate, length, nodal vectors, and their rates if they are asked. */
+/* An element as its law takes it: growth factor, its rate, length, constants, nodal vectors, and their rates if they
+ * are asked; made: the constants of a law that depend on the factor. */
 typedef struct {
     double g, rate, l, e[FU_MAX_COORDINATES], v[FU_MAX_COORDINATES];
+    const double *A;
+    double made[FU_MAX_CONSTANTS];
 } fu_grown;
+
+/* Returns the dof of the growth factor of an element. */
+static inline int fu_growth_dof(const fu_cable *cable, int element)
+{
+    return fu_piece_of(cable, element)->growth;
+}
 
 /* Returns the growth factor of an element at q, or its rate at v. */
 static inline double fu_growth(const fu_cable *cable, int element, const double *q)
 {
-    (void)element;
-    return q[cable->growth];
+    return q[fu_growth_dof(cable, element)];
 }
 
 void fu_grow(const fu_cable *cable, int element, double g, const double *e, fu_grown *grown);

@@ -45,7 +45,7 @@ cdef extern from * nogil:
     """
     double FU_SLACK_STRAIN, FU_NO_TIME
     int FU_CROSSING_STICK, FU_FRICTION_MARK, FU_SPAN_BEGIN, FU_SPAN_STRETCH, FU_MAX_HARD_CONTACTS
-    int FU_MAX_COORDINATES, FU_MAX_RATES, FU_ATTACHMENT_COORDINATES
+    int FU_MAX_COORDINATES, FU_MAX_CONSTANTS, FU_MAX_RATES, FU_SERIES_HEAD, FU_ATTACHMENT_COORDINATES
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE, FU_ROPE_LEFT
     int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_SELF_LOCKING, FU_NOT_KNOWN
     int FU_EVENT_OF_Q, FU_EVENT_OF_V, FU_EVENT_OF_S, FU_EVENT_OF_RATE, FU_EVENT_OF_OUTPUT, FU_EVENT_OF_CALL
@@ -55,16 +55,16 @@ cdef extern from * nogil:
     int FU_BAND_MORE(int width)
     long FU_BAND_BEYOND(int width)
     ctypedef struct fu_cable_piece:
-        int end, first
+        int end, first, growth
         double tau, mass_damping
     ctypedef struct fu_cable:
         const fu_element_kernels *kernel
         const fu_law_kernels *law
         const fu_law_blocks *blocks
         int n_elements, n_nodes, first, coordinates, per_node, l_stride, m_stride, A_stride, dissipation_state, tension_only
-        int growth
+        int growth, grows, A_size, terms
         const int *orders
-        const double *growth_constants
+        const double *growth_constants, *growth_series
         const double *share
         const fu_cable_piece *pieces
         double length, tau, mass_damping

@@ -82,6 +82,13 @@ cdef class Translation(Arrays):
             c.tension_only = cable.gives_way
             c.growth, c.orders = cable.growth, self._ints(cable.orders)
             c.growth_constants = NULL if cable.growth_constants is None else self._doubles(cable.growth_constants)
+            c.growth_series, c.A_size, c.terms = NULL, cable.A.shape[1], 0
+            if cable.growth_series is not None:
+                if c.A_size > FU_MAX_CONSTANTS:
+                    raise ValueError(f"{cable.element}: more constants than the engine's {FU_MAX_CONSTANTS}")
+                c.growth_series = self._doubles(cable.growth_series)
+                c.terms = (cable.growth_series.shape[1] - FU_SERIES_HEAD) // c.A_size
+            c.grows = c.growth_constants != NULL or c.growth_series != NULL
             c.per_node, c.n_nodes = c.kernel.vectors * c.kernel.dim, mesh.n_nodes
             self._pieces(c, cable)
             c.coordinates = c.kernel.nodes * c.per_node
@@ -110,7 +117,7 @@ cdef class Translation(Arrays):
         cdef int k
         for k, piece in enumerate(cable.pieces):
             pieces[k].end, pieces[k].first = piece.end, c.first + piece.doubled * c.per_node
-            pieces[k].tau, pieces[k].mass_damping = piece.tau, piece.mass_damping
+            pieces[k].tau, pieces[k].mass_damping, pieces[k].growth = piece.tau, piece.mass_damping, piece.growth
         c.pieces, c.tau, c.mass_damping = pieces, cable.tau, cable.mass_damping
         return 0
 

@@ -35,11 +35,11 @@
 
 static const double none[FU_MAX_RATES];
 
-/* A moving cable, the rotation that is subtracted from its motion, and the rate of its growth factor. */
+/* A moving cable, and the rotation that is subtracted from its motion. */
 typedef struct {
     const fu_cable *cable;
     const double *q, *v;
-    double weight, omega[3], growing;
+    double weight, omega[3];
 } moving;
 
 const fu_algorithmic *fu_algorithmic_of(const fu_run *run)
@@ -92,21 +92,28 @@ static void turn(const moving *m, int k, const double omega[3], double *turned)
     }
 }
 
+/* Returns the rate of the growth factor of an element. */
+static double growing(const moving *m, int k)
+{
+    return m->cable->growth < 0 ? 0.0 : fu_growth(m->cable, k, m->v);
+}
+
 /* Computes f of D (weight dE - relaxed), and dE, by the rates v of an element and that of its growth factor, to whose
  * dof it adds the force; returns their work. */
-static double law_force(const moving *m, int k, const double *v, double growing, const double *relaxed, double *f,
+static double law_force(const moving *m, int k, const double *v, double growth_rate, const double *relaxed, double *f,
                         double *dE, double *on_growth)
 {
     const fu_cable *cable = m->cable;
-    const double *e = m->q + entry_of(cable, k), *A = fu_element_constants(cable, k);
+    const double *e = m->q + entry_of(cable, k);
     if (cable->growth < 0) {
-        cable->law->algorithmic_force(fu_element_length(cable, k), e, v, A, m->weight, relaxed, f, dE);
+        cable->law->algorithmic_force(fu_element_length(cable, k), e, v, fu_element_constants(cable, k), m->weight,
+                                      relaxed, f, dE);
         return fu_dot(cable->coordinates, f, v);
     }
     fu_grown grown;
     fu_grow(cable, k, fu_growth(cable, k, m->q), e, &grown);
-    fu_grow_rates(cable, growing, v, &grown);
-    cable->law->algorithmic_force(grown.l, grown.e, grown.v, A, m->weight, relaxed, f, dE);
+    fu_grow_rates(cable, growth_rate, v, &grown);
+    cable->law->algorithmic_force(grown.l, grown.e, grown.v, grown.A, m->weight, relaxed, f, dE);
     const double work = fu_dot(cable->coordinates, f, grown.v);
     if (on_growth) *on_growth += fu_growth_force(cable, &grown, f);
     fu_forces_on_given(cable, grown.g, f);
@@ -121,7 +128,7 @@ static double element_force(const moving *m, int k, const double *relaxed, doubl
     double v[FU_MAX_COORDINATES];
     memcpy(v, m->v + entry_of(cable, k), sizeof(double) * (size_t)cable->coordinates);
     if (cable->law->spins) turn(m, k, back, v);
-    return law_force(m, k, v, m->growing, relaxed, f, dE, on_growth);
+    return law_force(m, k, v, growing(m, k), relaxed, f, dE, on_growth);
 }
 
 /* Solves N x = b, with N symmetric and positive semidefinite; x is zero for N zero. */
@@ -177,7 +184,7 @@ static void of_none(const fu_run *run, const fu_cable *cable, int k, double *rel
 static moving without_turn(const fu_run *run, const fu_cable *cable, const double *q, const double *v, double weight,
                            stress_of stress)
 {
-    moving m = {cable, q, v, weight, {0.0, 0.0, 0.0}, cable->growth < 0 ? 0.0 : v[cable->growth]};
+    moving m = {cable, q, v, weight, {0.0, 0.0, 0.0}};
     double N[9] = {0.0}, M[3] = {0.0};
     if (!cable->law->spins) return m;
     for (int k = 0; k < cable->n_elements; ++k) {
@@ -227,7 +234,7 @@ void fu_algorithmic_forces(fu_run *run, const double *q, double *force)
         for (int k = 0; k < cable->n_elements; ++k) {
             double f[FU_MAX_COORDINATES], relaxed[FU_MAX_RATES], dE[FU_MAX_RATES];
             of_both(run, cable, k, relaxed);
-            element_force(&m, k, relaxed, f, dE, cable->growth < 0 ? 0 : force + cable->growth);
+            element_force(&m, k, relaxed, f, dE, cable->growth < 0 ? 0 : force + fu_growth_dof(cable, k));
             for (int i = 0; i < cable->coordinates; ++i) force[entry_of(cable, k) + i] += f[i];
         }
     }
@@ -250,7 +257,7 @@ double fu_algorithmic_account(fu_run *run, const double *q)
             double f[FU_MAX_COORDINATES], relaxed[FU_MAX_RATES], dE[FU_MAX_RATES], on_growth = 0.0;
             of_both(run, cable, k, relaxed);
             element_force(&m, k, relaxed, f, dE, &on_growth);
-            work += fu_dot(cable->coordinates, f, psi) + on_growth * m.growing;
+            work += fu_dot(cable->coordinates, f, psi) + on_growth * growing(&m, k);
             for (int i = 0; i < n; ++i) next[i] = now[i] + 2.0 * (a->lag * dE[i] - now[i]) / (2.0 * a->lag + 1.0);
             of_inertia(run, cable, k, relaxed);
             const double gained = element_force(&second, k, relaxed, f, dE, 0);

@@ -77,7 +77,7 @@ def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts, time: np.n
     S = sections[0] if len(sections) == 1 else sections[cable.of_elements(cable.uniform_pieces.index)[element.ravel()]]
     lengths, places = cable.mesh.mean if cable.mesh.is_even else cable.mesh.lengths[element].ravel(), x.ravel()
     if cable.driven():
-        g = np.broadcast_to(cable.growth_at(time)[:, None], shape).ravel()
+        g = cable.growth_at(time)[instants, element].ravel()
         lengths, places = g * lengths, g * places
         e0 = [grown_shape(cable, each, g) for each in e0]
         factors = per_grown(cable.kind_of_element.nodal_vectors, g)

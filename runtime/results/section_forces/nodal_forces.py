@@ -67,16 +67,18 @@ def internal(cable: CableModel, at: Instants) -> np.ndarray:
         if moving:
             e = e if start is None else np.ascontiguousarray(start)
             damping = cable.law_kernel("damping_force")
-            of_damping = A[: damping.shapes["A"][0]]  # its law has the first of these constants only
+            # its law has the first of these constants only
+            of_damping = np.ascontiguousarray(A[..., : damping.shapes["A"][0]])
             found = found + damping.rows(len(e), length, e, v, of_damping, tau)
         return found
 
     taus = cable.of_elements(lambda piece: piece.tau)
     if cable.growth >= 0:
         g, (taken, rates, begun) = cable.growth_in(at.q), _as_taken(cable, at, e, v, start)
-        f = np.stack([forces(g * cable.mesh.length(k), taken[:, k], rates[:, k], cable.A[k % len(cable.A)],
-                             None if begun is None else begun[:, k], taus[k]) for k in range(cable.n_elements)], axis=1)
-        f *= per_grown(cable.vectors, g)[:, None]
+        f = np.stack([forces(g[:, k] * cable.mesh.length(k), taken[:, k], rates[:, k],
+                             cable.constants_with(g[:, k], k), None if begun is None else begun[:, k], taus[k])
+                      for k in range(cable.n_elements)], axis=1)
+        f *= per_grown(cable.vectors, g)
     elif len(cable.A) == 1:
         shape = e.shape
         flat = (-1, *shape[2:])
@@ -197,13 +199,13 @@ def _as_taken(cable: CableModel, at: Instants, e: np.ndarray, v: np.ndarray, sta
     as its law takes them, see engine/bodies/growth.c.
     """
     growth = cable.growth_in(at.q)
-    factors = per_grown(cable.vectors, growth)[:, None]
+    factors = per_grown(cable.vectors, growth)
     taken = factors * e
     relative = (np.tile(orders_of(cable.vectors), 2)[:, None] > 0) * taken
     place = cable.vectors.index("r")
     after = place + len(cable.vectors)
     relative[:, :, after] = taken[:, :, after] - taken[:, :, place]
-    rates = factors * v - (cable.growth_in(at.v) / growth)[:, None, None, None] * relative
+    rates = factors * v - (cable.growth_in(at.v) / growth)[..., None, None] * relative
     return taken, rates, None if start is None else factors * start
 
 

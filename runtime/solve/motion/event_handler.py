@@ -82,9 +82,9 @@ class State:
                            + ("" if found else ", ".join(self.names())))
         return found[quantity]
 
-    def growth(self, cable: CableModel) -> float:
-        """Return the factor of the stress-free length of a cable."""
-        return float(cable.growth_in(self._q))
+    def strained(self, cable: CableModel) -> np.ndarray:
+        """Return (1, nodes, vectors, 3): `CableModel.strained` of a cable."""
+        return spatial(cable.strained(self._q[None]))
 
     def names(self) -> list[str]:
         """Return the bodies, cables, ropes and slides with quantities in the state."""
@@ -138,9 +138,7 @@ class EventHandler:
         name, axis = _quantity(event).rsplit(".", 1)
         if axis == "least_strain":
             cable = next(cable for cable in self.model.cables if cable.name == name)
-            vectors = f"{name}.nodal_vectors"
-            return lambda time, state: middle_strain(cable, np.asarray(state[vectors])[None] / state.growth(cable)
-                                                     ).min() - event.value
+            return lambda time, state: middle_strain(cable, state.strained(cable)).min() - event.value
         return lambda time, state: np.asarray(state[name])[AXES.index(axis)] - event.value
 
     def acts(self, which: int, what: str, time: float, passed: bool, s: float | None) -> None:

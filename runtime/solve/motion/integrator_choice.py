@@ -282,7 +282,7 @@ def _check_gradients(integrator: Integrator, scene: SceneData, model: Model, eng
     tied = {joint.name for joint in model.joints if joint.slide is not None}
     for joint in (each for each in model.joints if each.joins_pieces and each in own):
         raise SceneError(scene.cables[joint.name].where, f"{who} has no discrete gradient of the joint of its pieces",
-                         "give them one axial stiffness, or take another integrator")
+                         "give them one axial stiffness and thermal_expansion, or take another integrator")
     labels = dict.fromkeys(coupling.name for coupling in own if coupling.name not in tied)
     parts = [*(part for part in scene.parts() if part.given_name in labels),
              *(part for part, slide in zip(scene.slides.values(), model.slides, strict=True)

@@ -110,7 +110,7 @@ def refuse_what_is_not_linear(scene: SceneData, model: Model) -> None:
     """Raise SceneError for parts of a scene that the linear model does not have."""
     who, remedy = 'integrator "linear"', "take another integrator"
     for cable in scene.cables.values():
-        if cable.growth.signal is not None:
+        if cable.grows:
             raise SceneError(cable.where, f"{who} does not support a stress-free length that changes", remedy)
     for fluid in scene.fluids.values():
         if fluid.waves is not None:

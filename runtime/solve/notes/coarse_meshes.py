@@ -90,9 +90,10 @@ class _Strains:
         energy, h, A = cable.law_kernel("energy"), cable.mesh.lengths, cable.A
         if cable.growth >= 0:
             g = cable.growth_in(q)
-            e, h = e * per_grown(cable.vectors, g)[:, None], g[:, None] * cable.mesh.all_lengths
-            A = np.broadcast_to(A, (len(self.h), A.shape[1]))
-            whole = np.array([energy.rows(len(self.h), *each, A) for each in zip(h, e, strict=True)])
+            e, h = e * per_grown(cable.vectors, g), g * cable.mesh.all_lengths
+            A = np.stack([np.broadcast_to(cable.constants_with(g[:, k], k), (len(e), A.shape[1]))
+                          for k in range(len(self.h))], axis=1)
+            whole = np.array([energy.rows(len(self.h), *each) for each in zip(h, e, A, strict=True)])
         elif len(h) == len(A) == 1:
             whole = energy.rows(e.shape[0] * e.shape[1], h[0], e.reshape(-1, *e.shape[2:]), A[0])
         else:
