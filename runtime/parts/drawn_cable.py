@@ -86,12 +86,11 @@ class DrawnCable(Fields):
 
     def driven(self) -> dict[str, Driven]:
         """Return the quantities that signals prescribe, by name: the growth of its pieces, or of all of them if it is
-        the same, unless that is constantly 1.
+        the same; none of a cable without a temperature and a signal. One at 0 K has them, as where that is adjusted.
         """
-        each = self.growth
-        if all(driven.signal is None and driven.base == 1.0 for driven in each):
+        if self.temperature is None and not self.grows:
             return {}
-        return {name: driven for name, driven in zip(self.names_of_growth, each, strict=True)}
+        return dict(zip(self.names_of_growth, self.growth, strict=True))
 
     @property
     def names_of_growth(self) -> list[str]:

@@ -129,8 +129,7 @@ class Variants(Generic[S]):
                 _check_end(path, 1)
         changes, gravity = changes_of(scene, values), gravity_of(scene, values)
         parts = (part.remade(changes[k]) if k in changes else part for k, part in enumerate(self._parts[first:], first))
-        temperature = next((value for path, value in values.items() if path.head == TEMPERATURE), None)
-        made = scene.with_parts(parts, gravity, self._begun, temperature)
+        made = scene.with_parts(parts, gravity, self._begun, temperature_of(values))
         for name, table in settings.items():
             if table:
                 setattr(made, f"{name}_settings", getattr(scene, f"{name}_settings") | table)
@@ -145,6 +144,11 @@ def gravity_of(scene: SceneData, values: Mapping[Path, Any]) -> list[Any]:
             gravity[COMPONENTS[path.entries[0]]] = value
             _check_end(path, 1)
     return gravity
+
+
+def temperature_of(values: Mapping[Path, Any]) -> Any:
+    """Return the other value of the temperature of the scene, None where there is none."""
+    return next((value for path, value in values.items() if path.head == TEMPERATURE and path.part is None), None)
 
 
 def changes_of(scene: SceneData, values: Mapping[Path, Any]) -> dict[int, dict[str, Any]]:

@@ -306,15 +306,16 @@ class SceneData:
             scene.add(part.as_made())
         return scene
 
-    def changed(self, changes: Iterable[tuple[Part, Mapping[str, Any]]], gravity: Any = None) -> Self:
+    def changed(self, changes: Iterable[tuple[Part, Mapping[str, Any]]], gravity: Any = None,
+                temperature: Any = None) -> Self:
         """Return a checked scene with other values of several parts at once.
 
-        changes: parts of this scene, each once, with values by keyword; gravity: in m/s², by default unchanged. Raises
-        SceneError.
+        changes: parts of this scene, each once, with values by keyword; gravity: in m/s², temperature: in K, by default
+        unchanged. Raises SceneError.
         """
         values = {id(part): each for part, each in changes}
         return self.with_parts((each.remade(values[id(each)]) if id(each) in values else each
-                                for each in self.parts()), gravity)
+                                for each in self.parts()), gravity, temperature=temperature)
 
     def remeshed(self, elements: Callable[[Cable], int],
                  of_spans: Callable[[Rope], tuple[int, ...]] | None = None) -> Self:

@@ -260,6 +260,18 @@ def test_files_and_resuming_keep_every_bit(tmp_path):
     assert again.to_toml() == warm.to_toml()
 
 
+@pytest.mark.parametrize("begin", [40.0, 0.0])
+def test_the_temperature_of_a_scene_is_adjusted(begin):
+    """From 0 K, too, where nothing grows; the adjusted scene is that of the line at its own temperature."""
+    scene = fu.Scene(gravity=(0, -10, 0), temperature=begin).with_parts(string(None).parts())
+    rest = scene.equilibrium(adjust=["temperature"], to={"line@0.force.x": -3624.711844})
+    assert rest.adjusted["temperature"] == pytest.approx(-40.0, abs=1e-6)
+    assert rest.scene.temperature == rest.adjusted["temperature"]
+    assert pull(rest.scene.equilibrium()) == pytest.approx(3624.711844, rel=1e-9)
+    with refused('adjust of "temperature": has no value yet; give a value to begin with'):
+        string(None).equilibrium(adjust=["temperature"], to={"line@0.force.x": -3500.0})
+
+
 @pytest.mark.parametrize("parameter", ["temperature", "rest_length", "material.thermal_expansion",
                                        "material.youngs_modulus"])
 def test_adjusting_and_derivatives(parameter):
@@ -279,6 +291,11 @@ def test_a_state_at_another_temperature_is_refused():
     colder = string(fu.Ramp(start=1, end=2, before=-10, after=10))
     with pytest.raises(fu.SceneError, match="is at t = 0 another than in the state to start from"):
         colder.run(duration=0.1, initial=scene.equilibrium())
+    plain = string(None)
+    for here, other in ((plain, scene), (scene, plain)):
+        with pytest.raises(fu.SceneError, match="its lengths, stiffnesses and temperatures are"):
+            here.run(duration=0.1, initial=other.equilibrium())
+        assert pull(here.equilibrium(start=other.equilibrium())) == pytest.approx(pull(plain.equilibrium()), rel=1e-9)
     assert pull(colder.equilibrium(start=scene.equilibrium())) == pytest.approx(pull(string(-10).equilibrium()),
                                                                                 rel=1e-9)
 

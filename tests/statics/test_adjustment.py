@@ -192,6 +192,7 @@ def test_a_dropper_that_begins_slack_is_made_taut_and_none_pushes():
     ({"adjust": ["spring.lenght"], "to": {"A.position.y": 1.0}}, 'spring has no "lenght"; did you mean "length"?'),
     ({"adjust": ["spring.a"], "to": {"A.position.y": 1.0}}, "not a number that can be adjusted"),
     ({"adjust": ["equilibrium.tolerance"], "to": {"A.position.y": 1.0}}, "settings cannot be adjusted"),
+    ({"adjust": ["temperature.x"], "to": {"A.position.y": 1.0}}, "temperature has no entries"),
     ({"adjust": ["gravity.y.z"], "to": {"A.position.y": 1.0}}, "gravity.y has no entries"),
     ({"adjust": ["spring.length"], "to": {"A.position": 1.0}}, "has three components; add .x, .y or .z"),
     ({"adjust": ["spring.length"], "to": {"spring.tension.x": 1.0}}, "has no components"),

@@ -93,7 +93,33 @@ STIFFER = fu.Material(youngs_modulus=1e8, poisson_ratio=0.3, density=1500.0)
 SHEARED = fu.Material(youngs_modulus=1e7, shear_modulus=9e6, density=1500.0)
 WEIGHTY = ["wire.rest_length", "wire.material.density", "gravity.y"]
 ALL = ["wire.rest_length", "wire.section.radius", "wire.material.youngs_modulus", "wire.material.density", "gravity.y"]
+WARM = {"thermal_expansion": 1e-4}
+
+
+def heated(temperature, *args, **given):
+    """Return the cable in a scene with a temperature."""
+    cold = wire(*args, **given, material=STIFFER.remade(WARM))
+    scene = fu.Scene(gravity=cold.gravity, temperature=temperature)
+    return scene.with_parts(cold.parts())
+
+
+def of_two_materials():
+    materials = [STEEL.remade(WARM), STIFFER.remade({"thermal_expansion": 5e-5})]
+    scene = fu.Scene(gravity=(0.3, -9.81, 0), temperature=20.0)
+    scene.cable("wire", start=(0, 0, 0), end=(4, 0.3, 0), element="cable8p", pieces=[
+        fu.Piece(length=2.05, section=fu.Circle(radius=0.01), material=each, elements=4) for each in materials])
+    for s in (0, 4.1):
+        scene.pin("wire", s=s)
+    return scene
+
+
 LAWS_AND_SHAPES = {
+    "warm": (lambda: heated(20.0, "cable8p"), ["temperature"], ["temperature"]),
+    "a warm cable": (lambda: wire("cable12", material=STEEL.remade(WARM), temperature=20.0), ["wire.temperature"],
+               ["wire.temperature"]),
+    "warm, curved": (lambda: heated(20.0, "beam12p", ARC), ["temperature"], ["temperature"]),
+    "warm, structural": (lambda: heated(-20.0, "beam24", law="structural"), ["temperature"], ["temperature"]),
+    "warm, of two materials": (of_two_materials, ["temperature"], ["temperature"]),
     "curved cable": (lambda: wire("cable12", ARC), ALL, ALL),
     "curved beam": (lambda: wire("beam24", ARC, material=STIFFER), ALL, ALL),
     "curved structural beam": (lambda: wire("beam24", ARC, law="structural", material=STIFFER), ALL, ALL),

@@ -13,6 +13,7 @@ e without the directors; those on directors by f more.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -29,10 +30,30 @@ DIFFERENCE_STEP = 1e-6
 """Relative step of a length, to either side, of differences of element forces."""
 
 
-def elastic_force(model: CableModel, A: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """Return (coordinates,): dU/dq of a cable with constants A (1 or elements, n) of its elements, at q (n_q,)."""
+def elastic_force(model: CableModel, A: np.ndarray, q: np.ndarray, growth: np.ndarray | None = None) -> np.ndarray:
+    """Return (coordinates,): dU/dq of a cable with constants A (1 or elements, n) of its elements, at q (n_q,).
+
+    growth: (elements,) factors of their stress-free lengths, by default those at q.
+    """
+    g = model.growth_in(q) if growth is None else growth
     kernel = model.law_kernel("elastic_force")
-    return assembled(model, _factors(model, q) * kernel.rows(model.n_elements, *_given(model, A, q)))
+    return assembled(model, per_grown(model.vectors, g) * kernel.rows(model.n_elements, *_given(model, A, q, g)))
+
+
+def by_temperature(model: CableModel, cable: Cable, q: np.ndarray) -> np.ndarray:
+    """Return (coordinates,): derivative of the elastic forces at q (n_q,) by the temperature of a cable, N/K and N m/K:
+    their difference by the growth of its pieces.
+    """
+    expansion = [piece.material.thermal_expansion or 0.0 for piece in cable.uniform_pieces]
+    if not (largest := max(map(abs, expansion))):
+        return np.zeros(math.prod(model.shape))
+    step, ends = DIFFERENCE_STEP / largest, [piece.end - piece.first for piece in cable.uniform_pieces]
+
+    def warmer(change: float) -> np.ndarray:
+        growth = [each.start + change * own for each, own in zip(cable.growth, expansion, strict=True)]
+        return elastic_force(model, constants(cable, growth=growth), q, np.repeat(growth, ends))
+
+    return np.asarray((warmer(step) - warmer(-step)) / (2 * step))
 
 
 def assembled(model: CableModel, each: np.ndarray) -> np.ndarray:
@@ -95,21 +116,18 @@ def _slopes(model: CableModel) -> np.ndarray:
     return model.orders[:, None].astype(float)
 
 
-def _factors(model: CableModel, q: np.ndarray) -> np.ndarray:
-    """Return `per_grown` of the elements at q (n_q,)."""
-    return per_grown(model.vectors, model.growth_in(q))
-
-
 def _stiffness_times(model: CableModel, q: np.ndarray, chosen: np.ndarray) -> np.ndarray:
     """Return (coordinates,): d2U/dq2 times the chosen (vectors,) of the nodal vectors at q (n_q,)."""
-    lengths, e, A = _given(model, model.A, q)
+    g = model.growth_in(q)
+    lengths, e, A = _given(model, model.A, q, g)
     K = model.law_kernel("elastic_tangent").rows(model.n_elements, lengths, e, A)
     along = np.where(np.tile(chosen, 2)[:, None], e, 0.0).reshape(len(e), -1)
-    return assembled(model, _factors(model, q) * np.einsum("eij,ej->ei", K, along).reshape(e.shape))
+    return assembled(model, per_grown(model.vectors, g) * np.einsum("eij,ej->ei", K, along).reshape(e.shape))
 
 
-def _given(model: CableModel, A: np.ndarray, q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _given(model: CableModel, A: np.ndarray, q: np.ndarray, growth: np.ndarray
+           ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the arguments of a law's kernels by element: lengths, nodal vectors, constants, as the law takes them."""
-    n, e = model.n_elements, _factors(model, q) * element_coordinates(model, q[None])[0]
-    return (np.ascontiguousarray(np.broadcast_to(model.growth_in(q) * model.mesh.lengths, n)), np.ascontiguousarray(e),
+    n, e = model.n_elements, per_grown(model.vectors, growth) * element_coordinates(model, q[None])[0]
+    return (np.ascontiguousarray(np.broadcast_to(growth * model.mesh.lengths, n)), np.ascontiguousarray(e),
             np.ascontiguousarray(np.broadcast_to(A, (n, A.shape[1]))))

@@ -13,7 +13,7 @@ These columns spare two models of the scene per parameter: 1.2 s in place of 88 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import singledispatchmethod
 
 import numpy as np
@@ -34,12 +34,12 @@ from ...parts.cable import Cable
 from ...parts.load import DistributedForce, Force, Moment
 from ...parts.locations import on_cables
 from ...parts.part import Part
-from ...parts.paths import Path, changes_of, value_at
+from ...parts.paths import TEMPERATURE, Path, changes_of, value_at
 from ...parts.point_force import PointForce
 from ...parts.rigid_body import RigidBody
 from ...parts.support import Motion
 from ..statics.static_problem import StaticProblem
-from .cable_changes import Own
+from .cable_changes import Own, by_temperature
 from .change import Change, Rest, altered
 from .length_changes import NOT_SCALING_GROUPS, by_length, hangs_plainly, lengthens_plainly
 from .load_changes import AnyLoad, by_end, by_place, by_values, unit_of
@@ -70,7 +70,7 @@ class Changes:
             if isinstance(part, Force | DistributedForce | Moment) and path.entries[0] == "value":
                 if (unit := unit_of(self.rest, part, path.entries)) is not None:
                     loads[k] = unit
-            elif (change := self._gravity(path) if part is None else self._of(part, path)) is not None:
+            elif (change := self._of_all(path) if part is None else self._of(part, path)) is not None:
                 self.found[k] = change
         self.found |= by_values(self.rest, loads)
         self._keep_places(paths)
@@ -113,6 +113,23 @@ class Changes:
         modal = any(body.modes for body in self.model.bodies)
         return not (found or modal or self.rest.reader.sections or self.scene.drags)
 
+    def _of_all(self, path: Path) -> Change | None:
+        """Return the change by gravity or by the temperature of the scene, None where it is more than a `Change`."""
+        if path.head != TEMPERATURE:
+            return self._gravity(path)
+        return self._warmer([cable for cable in self.scene.cables.values()
+                             if "temperature" not in cable.model_fields_set])
+
+    def _warmer(self, cables: Iterable[Cable]) -> Change | None:
+        """Return the change by the temperature of cables."""
+        change, reader = Change(self.model), self.rest.reader
+        for cable in cables:
+            if reader.sections or cable.name in reader.parts:
+                return None
+            model = self.rest.model_of(cable.name)
+            change.f[model.coordinates] = by_temperature(model, cable, self.rest.problem.keep()["q"])
+        return change
+
     def _gravity(self, path: Path) -> Change | None:
         """Return the change by a component of gravity, None for another path."""
         direction = self.rest.along(path.entries[0])
@@ -145,6 +162,8 @@ class Changes:
             return None
         if path.entries == ("rest_length",):
             return by_length(self.rest, cable) if lengthens_plainly(self.rest, cable) else None
+        if path.entries == ("temperature",):
+            return self._warmer([cable])
         if path.entries == ("material", "thermal_expansion"):
             return None
         if path.entries[0] not in ("section", "material") or self.rest.names(cable.name, SECTION_DEPENDENT_GROUPS):

@@ -11,9 +11,19 @@ import numpy as np
 from ...errors import FunicularWarning, SceneError
 from ...parts.cable import Cable
 from ...parts.locations import following, remade
-from ...parts.paths import Path, changes_of, check_each_once, gravity_of, path_of, unit_of, value_at
+from ...parts.paths import (
+    Path,
+    changes_of,
+    check_each_once,
+    gravity_of,
+    path_of,
+    temperature_of,
+    unit_of,
+    value_at,
+)
 from ...parts.point_force import PointForce
 from ...parts.scene_data import SceneData
+from ...parts.scene_text import OF_ALL
 from ...parts.settings import Limits
 from ...parts.validation import shown
 
@@ -55,9 +65,9 @@ class Parameters(Generic[S]):
 
     def _value(self, path: Path) -> float:
         """Return the number at a path. Raises SceneError where there is none."""
-        if path.part is None and path.head != "gravity":
-            what = "the temperature of a scene" if path.head == "temperature" else "settings"
-            raise SceneError(path.where, f"{what} cannot be adjusted", "give a path into a part, or gravity")
+        if path.part is None and path.head not in OF_ALL:
+            raise SceneError(path.where, "settings cannot be adjusted", "give a path into a part, or "
+                             + " or ".join(OF_ALL))
         value = value_at(self.scene, path)
         part = None if path.part is None else self.parts[path.part]
         if value is None and isinstance(part, Cable) and path.entries == ("rest_length",):
@@ -88,7 +98,7 @@ class Parameters(Generic[S]):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", FunicularWarning)  # the scene's messages have them
             made = self.scene.changed([(self.parts[k], entries) for k, entries in changes.items()],
-                                      gravity_of(self.scene, given))
+                                      gravity_of(self.scene, given), temperature_of(given))
         made.equilibrium_settings = {name: value for name, value in made.equilibrium_settings.items()
                                      if name not in ("adjust", "to")}
         return made

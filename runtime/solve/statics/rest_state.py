@@ -9,6 +9,7 @@ import numpy as np
 
 from ...base.named_arrays import NamedArrays
 from ...errors import EquilibriumError, SceneError, UnknownResultError, near
+from ...model.driven_dofs import DrivenDofs
 from ...model.kinds import COUPLINGS
 from ...model.model import Model
 from ...model.part_states import States, numbers_at_rest, part_states
@@ -43,11 +44,17 @@ def in_loads(fraction: float) -> str:
     return "all loads" if fraction == 1 else f"{fraction:.6g} times the loads"
 
 
+DRIVEN = "lengths, stiffnesses and temperatures"
+"""Kind of the quantities in a `layout` that belong to no node or body."""
+
+
 def layout(scene: SceneData) -> dict[str, list[Any]]:
     """Return the properties that two scenes share if a state of one is a state of the other."""
     found: dict[str, list[Any]] = {
-        "cables": [(c.name, c.element, c.elements, c.length, *c.uneven_nodes) for c in scene.cables.values()],
-        "plane": [called(scene.plane)], "bodies": list(scene.bodies)}
+        "cables": [(c.name, c.element, c.elements, c.length, *c.uneven_nodes, *c.doubled)
+                   for c in scene.cables.values()],
+        "plane": [called(scene.plane)], "bodies": list(scene.bodies),
+        DRIVEN: [f"{what} of {where}" for where, what in DrivenDofs.of(scene, 0).driven]}
     for kind in COUPLINGS:
         if kind.has_state:
             found[kind.group] = [_without_ends(part) for part in scene.group(kind.group)]
@@ -247,6 +254,8 @@ class RestState(NamedArrays):
         """
         for kind, here in layout(scene).items():
             held = self.layout[kind]
+            if any_mesh and kind == DRIVEN:
+                continue
             if any_mesh and kind == "cables" and [_without_mesh(c) for c in here] == [_without_mesh(c) for c in held]:
                 continue
             if here != held:

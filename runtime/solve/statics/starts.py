@@ -61,13 +61,18 @@ def on_mesh(kept: Mapping[str, np.ndarray], was: Model, model: Model, drawn: Map
     """
     fitting = {name: values for name, values in kept.items() if values.shape == np.shape(drawn.get(name, np.zeros(0)))}
     pairs = list(zip(was.cables, model.cables, strict=True))
-    if all(np.array_equal(one.mesh.node_s, other.mesh.node_s) for one, other in pairs):
+    is_same = all(np.array_equal(one.mesh.node_s, other.mesh.node_s) for one, other in pairs)
+    if is_same and "q" in fitting:
         return dict(drawn) | fitting
     q = drawn["q"].copy()
     for one, other in pairs:
-        q[other.coordinates] = _nodal_vectors(one.nodal(kept["q"]), one, other).ravel()
-    bodies = [each.cables[-1].coordinates.stop for each in (was, model)]
-    q[bodies[1]:] = kept["q"][bodies[0]:]
+        vectors = one.nodal(kept["q"])
+        q[other.coordinates] = (vectors if is_same else _nodal_vectors(vectors, one, other)).ravel()
+    first = [each.cables[-1].coordinates.stop if each.cables else 0 for each in (was, model)]
+    q[first[1] : model.driven.start] = kept["q"][first[0] : was.driven.start]
+    if len(model.driven) == len(was.driven):
+        q[model.driven] = kept["q"][was.driven]
+    q[model.driven.stop :] = kept["q"][was.driven.stop :]
     return dict(drawn) | fitting | {"q": q}
 
 
