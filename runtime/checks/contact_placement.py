@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,15 +15,16 @@ from ..errors import SceneError, near
 from ..parts.cable import Cable
 from ..parts.contact import GAUSS_POINTS, Contact
 from ..parts.modal_body import ModalBody
+from ..parts.piece import UniformPiece
 from ..parts.rigid_body import RigidBody
 from ..parts.rope import Rope
 from ..parts.scene_data import SceneData
-from ..parts.section import outer_radius_of
+from ..parts.stretches import overlap, stretches
 from ..parts.surface import Surface
 from ..parts.surface_shapes import HeightField
 from ..parts.validation import show
 from .frames import plane_normal
-from .placement import check_has_mass
+from .placement import check_has_mass, node_at
 
 WEIGHT_PENETRATION = 0.01
 """Penetration under the weight with the default stiffness, as a fraction of the radius."""
@@ -113,11 +114,18 @@ def _of_surface(scene: SceneData, contact: Contact, known: Mapping[tuple[str, st
                          near(contact.b, scene.surfaces) if scene.surfaces else
                          'add one before: scene.surface("ground", fu.Plane())')
     pair = (contact.a, contact.b)
-    if (other := known.get(pair)) is not None or pair in own:
-        where = (own[pair] if other is None else scene.contacts[other]).where
-        raise SceneError(contact.where, f'"{contact.a}" and "{contact.b}" have the {where} already',
-                         "leave one of them out")
+    if pair in known or pair in own:
+        _check_alone(contact, [each for each in (*scene.contacts.values(), *own.values()) if (each.a, each.b) == pair],
+                     "" if scene.cables.get(contact.a) is None else ", or give them start and stop")
     return contact
+
+
+def _check_alone(contact: Contact, others: list[Contact], remedy: str) -> None:
+    """Raise SceneError where another contact of the same two acts on the same part of a cable."""
+    part = contact.start, contact.stop
+    if other := next((each for each in others if overlap((each.start, each.stop), part)), None):
+        raise SceneError(contact.where, f'"{contact.a}" and "{contact.b}" have the {other.where} already',
+                         "leave one of them out" + remedy)
 
 
 def _complete(scene: SceneData, contact: Contact) -> Contact:
@@ -130,6 +138,10 @@ def _complete(scene: SceneData, contact: Contact) -> Contact:
     else:
         raise SceneError(contact.where, f'there is no cable or body "{contact.a}"',
                          near(contact.a, [*scene.cables, *scene.ropes, *scene.bodies]))
+    given = next((name for name in ("start", "stop") if getattr(contact, name) is not None), None)
+    if given is not None and contact.a not in scene.cables:
+        raise SceneError(contact.where, f'{given} is an arc-length of a cable, and "{contact.a}" is a '
+                         f'{"rope" if contact.a in scene.ropes else "body"}', f"leave {given} out")
     if contact.a not in scene.ropes and contact.friction is not None and contact.friction.model == "regularised":
         raise SceneError(contact.where, "has no regularised friction", 'leave model="regularised" out')
     if contact.has_friction_spring and contact.exponent != 1.0 and contact.tangential_stiffness is None:
@@ -140,11 +152,14 @@ def _complete(scene: SceneData, contact: Contact) -> Contact:
 
 @dataclass
 class _Start:
-    """Points of a cable or body as drawn, (n, 3) in m, and its weight, N or N/m."""
+    """Points of a cable or body as drawn, (n, 3) in m, with the radius of contact at each (n,) in m, or of all, and its
+    weight, N or N/m.
+    """
 
     of: tuple[str, Any]
     drawn: np.ndarray
     weight: float
+    radius: np.ndarray | float
 
 
 def _start_of(scene: SceneData, contact: Contact, last: _Start | None) -> _Start:
@@ -152,9 +167,13 @@ def _start_of(scene: SceneData, contact: Contact, last: _Start | None) -> _Start
     key = contact.a, contact.points
     if last is not None and last.of == key:
         return last
+    radius: np.ndarray | float = contact.radius or 0.0
     if contact.a in scene.cables:
         cable = scene.cables[contact.a]
-        drawn = cable.points_at(cable.samples(SAMPLES))
+        s = cable.samples(SAMPLES)
+        if contact.start is not None or contact.stop is not None or contact.radius is None:
+            s, radius = _samples(contact, cable)
+        drawn = cable.points_at(s)
     elif contact.a in scene.ropes:
         rope = scene.ropes[contact.a]
         drawn = np.zeros((rope.n_spans * (SAMPLES + 1), 3))
@@ -162,7 +181,20 @@ def _start_of(scene: SceneData, contact: Contact, last: _Start | None) -> _Start
                                                for span in scene.route_of(rope).spans])
     else:
         drawn = np.array([scene.bodies[contact.a].point(point) for point in contact.points or ()])
-    return _Start(key, drawn, _weight(scene, contact))
+    return _Start(key, drawn, _weight(scene, contact), radius)
+
+
+def _samples(contact: Contact, cable: Cable) -> tuple[np.ndarray, np.ndarray]:
+    """Return arc-lengths (n,) in m of sample points on the part of a cable in contact, and the radius at each, m."""
+    every = cable.samples(SAMPLES)
+    if cable.is_open:
+        start, stop = (contact.start or 0.0), cable.length if contact.stop is None else contact.stop
+        s = every[(every >= start) & (every <= stop)]
+        return s, np.full(len(s), contact.radius)
+    found = [(every[piece.first * SAMPLES : piece.end * SAMPLES + 1], contact.radius_of(piece.section))
+             for piece in contact.stretches(cable)]
+    return (np.concatenate([s for s, _ in found]),
+            np.concatenate([np.full(len(s), radius, dtype=float) for s, radius in found]))
 
 
 def _of_cable(scene: SceneData, contact: Contact, cable: Cable) -> Contact:
@@ -171,12 +203,23 @@ def _of_cable(scene: SceneData, contact: Contact, cable: Cable) -> Contact:
                          "leave restitution out and give stiffness, in N/m a length")
     if contact.points is not None:
         raise SceneError(contact.where, f'acts along cable "{cable.name}" and takes no points', "leave points out")
-    radii = {outer_radius_of(piece.section) for piece in cable.uniform_pieces}
-    radius = (radii.pop() if len(radii) == 1 else None) if contact.radius is None else contact.radius
-    if radius is None:
+    for name in ("start", "stop"):
+        if (s := getattr(contact, name)) is not None:
+            node_at(scene, contact.a, contact.where, s, name)
+    radii = [contact.radius_of(piece.section) for piece in contact.stretches(cable)]
+    if None in radii:
         raise SceneError(contact.where, "radius is missing, which does not follow from the section of the cable",
                          "give radius, in m: the distance of the surface from the axis at contact")
-    return _with_stiffness(scene, contact, radius)
+    found = _with_stiffness(scene, contact, min(radius for radius in radii if radius is not None))
+    return found if len(radii) == 1 else found.completed({"radius": None})
+
+
+def radii_of(scene: SceneData, contact: Contact) -> list[float]:
+    """Return the radii of a contact, m: one, or those of the pieces of a cable."""
+    if contact.radius is not None:
+        return [contact.radius]
+    return [radius for piece in contact.stretches(scene.cables[contact.a])
+            if (radius := contact.radius_of(piece.section)) is not None]
 
 
 def _of_rope(scene: SceneData, contact: Contact, rope: Rope) -> Contact:
@@ -203,7 +246,7 @@ def _of_rope(scene: SceneData, contact: Contact, rope: Rope) -> Contact:
 
 def _check_resolution(scene: SceneData, contact: Contact, rope: Rope) -> None:
     """Raise SceneError where elements of a rope as drawn are too long for the shape of a surface."""
-    if (limit := resolved(scene, contact)) is None:
+    if (limit := resolved(scene, contact, contact.radius or 0.0)) is None:
         return
     spans = zip(scene.route_of(rope).spans, rope.elements_of_spans, strict=True)
     longest, most = max(span.length / n for span, n in spans), limit.chord / max_point_distance()
@@ -228,8 +271,15 @@ def _weight(scene: SceneData, contact: Contact) -> float:
     """Return the weight of a cable or a rope per length, N/m, or of a body, N."""
     line = scene.line(contact.a)
     mass = scene.bodies[contact.a].mass if line is None else max(
-        piece.material.density * piece.section.area for piece in line.uniform_pieces)
+        piece.material.density * piece.section.area for piece in _pieces(line, contact))
     return mass * float(np.linalg.norm(scene.gravity))
+
+
+def _pieces(line: Cable | Rope, contact: Contact) -> Sequence[UniformPiece]:
+    """Return the pieces of a cable or a rope in contact."""
+    if contact.start is None and contact.stop is None:
+        return line.uniform_pieces
+    return stretches(line, contact.start, contact.stop, lambda section: section)
 
 
 def _with_stiffness(scene: SceneData, contact: Contact, radius: float,
@@ -270,7 +320,7 @@ def _check_fits(scene: SceneData, contact: Contact) -> None:
     surface = scene.surfaces[contact.b]
     if not surface.inside:
         return
-    shape, radius = surface.geometry, contact.radius or 0.0
+    shape, radius = surface.geometry, max(radii_of(scene, contact))
     if scene.dim == 2:
         normal, body = plane_normal(scene), scene.bodies.get(surface.on or "")
         shape = shape.in_plane(normal if body is None else rotate(conjugate(body.frame[1]), normal))
@@ -284,9 +334,9 @@ def _allowed(scene: SceneData, contact: Contact, start: _Start) -> tuple[float, 
     """Return the allowed penetration at the start, m, and its reason in words."""
     if contact.is_hard:
         return HARD_PENETRATION_ROUNDING * _largest_length(scene, contact), ": a hard contact has no depth"
-    assert contact.radius is not None and contact.stiffness is not None, f"{contact.where} is not complete"
+    assert contact.stiffness is not None, f"{contact.where} is not complete"
     sinks = (start.weight / contact.stiffness) ** (1 / contact.exponent)
-    allowed = max(MAX_START_PENETRATION * contact.radius, 10 * sinks)
+    allowed = max(MAX_START_PENETRATION * min(radii_of(scene, contact)), 10 * sinks)
     return allowed, f"; {show(float(allowed), 'm')} is allowed"
 
 
@@ -310,7 +360,8 @@ def _check_penetrations(scene: SceneData, contacts: list[Contact], starts: list[
         drawn = [starts[k].drawn for k in numbers]
         first = np.cumsum([0, *map(len, drawn)])
         distance = surface.distance(scene.bodies.get(surface.on or ""), np.concatenate(drawn), normal)
-        below = np.repeat([contacts[k].radius or 0.0 for k in numbers], np.diff(first)) - distance > 0
+        radii = np.concatenate([np.broadcast_to(starts[k].radius, len(starts[k].drawn)) for k in numbers])
+        below = radii - distance > 0
         for at in np.unique(np.searchsorted(first, np.flatnonzero(below), "right") - 1).tolist():
             k = numbers[at]
             error = _too_deep(scene, contacts[k], starts[k], distance[first[at] : first[at + 1]])
@@ -324,8 +375,9 @@ def _check_penetrations(scene: SceneData, contacts: list[Contact], starts: list[
 def _too_deep(scene: SceneData, contact: Contact, start: _Start, distance: np.ndarray) -> SceneError | None:
     """Return an error where a point is too deep; distance: of the points (n,) from the surface, m."""
     allowed, why = _allowed(scene, contact, start)
-    k = int(distance.argmin())
-    depth = (contact.radius or 0.0) - distance[k]
+    depths = start.radius - distance
+    k = int(depths.argmax())
+    depth = depths[k]
     if not depth > allowed:
         return None
     return SceneError(
@@ -333,13 +385,12 @@ def _too_deep(scene: SceneData, contact: Contact, start: _Start, distance: np.nd
         f"{show(start.drawn[k], 'm')}", f"draw it higher, or the surface lower{why}")
 
 
-def radius_of(scene: SceneData, contact: Contact) -> float:
-    """Return the radius of a contact, m, 0 where it is negligible beside the section of the cable."""
-    assert contact.radius is not None, f"{contact.where} is not complete"
+def radius_of(scene: SceneData, contact: Contact, radius: float) -> float:
+    """Return a radius of a contact, m, 0 where it is negligible beside the section of the cable."""
     line = scene.line(contact.a)
     least = 0.0 if line is None else MIN_CONTACT_RADIUS * float(np.sqrt(
         min(piece.section.area for piece in line.uniform_pieces) / np.pi))
-    return contact.radius if contact.radius > least else 0.0
+    return radius if radius > least else 0.0
 
 
 class Resolution(NamedTuple):
@@ -357,9 +408,9 @@ def max_point_distance() -> float:
     return float(np.diff(gauss(GAUSS_POINTS)[0]).max()) / 2
 
 
-def resolved(scene: SceneData, contact: Contact) -> Resolution | None:
-    """Return the resolution of a surface that the points of a cable need; None for a flat one."""
-    radius = radius_of(scene, contact)
+def resolved(scene: SceneData, contact: Contact, radius: float) -> Resolution | None:
+    """Return the resolution of a surface that the points of a cable of a radius, m, need; None for a flat one."""
+    radius = radius_of(scene, contact, radius)
     bend = _bend_radius(scene.surfaces[contact.b], radius)
     if not np.isfinite(bend):
         return None

@@ -13,6 +13,7 @@ from ..parts.fluid import NO_SURFACE, Fluid
 from ..parts.locations import point_of
 from ..parts.rope import Rope
 from ..parts.scene_data import SceneData
+from ..parts.stretches import overlap
 from ..parts.validation import LENGTH_TOLERANCE, show
 from ..parts.velocity_table import VelocityTable
 from .frames import draws_section
@@ -211,18 +212,12 @@ def _check_rope(scene: SceneData, drag: Drag, rope: Rope) -> None:
 
 def _check_alone(scene: SceneData, drag: Drag, line: Cable | Rope) -> None:
     """Raise SceneError where a cable or a rope has another drag in the same fluid, and on the same elements."""
-    if other := next((each for each in scene.drags.values() if each.on == drag.on and _overlap(each, drag)
+    if other := next((each for each in scene.drags.values() if each.on == drag.on
+                      and overlap((each.start, each.stop), (drag.start, drag.stop))
                       and (None in (each.fluid, drag.fluid) or each.fluid == drag.fluid
                            or not _are_apart(scene, each, drag))), None):
         raise SceneError(drag.where, f'{line.where} has the {other.where} already', "leave one of them out"
                          + ", or give them start and stop" * isinstance(line, Cable))
-
-
-def _overlap(one: Drag, other: Drag) -> bool:
-    """Return whether the parts of a cable that two drags act on overlap."""
-    ends = [(0.0 if drag.start is None else drag.start, np.inf if drag.stop is None else drag.stop)
-            for drag in (one, other)]
-    return max(start for start, _ in ends) < min(stop for _, stop in ends)
 
 
 def _check_acts(drag: Drag, line: Cable | Rope) -> None:

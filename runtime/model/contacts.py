@@ -18,6 +18,7 @@ from ..parts.attachment import Attachment
 from ..parts.contact import GAUSS_POINTS, Contact
 from ..parts.friction import Friction
 from ..parts.modal_body import ModalBody
+from ..parts.piece import UniformPiece
 from ..parts.scene_data import SceneData
 from ..parts.surface import Surface
 from ..parts.surface_shapes import HALF_WIDTH, Geometry
@@ -39,8 +40,8 @@ class ContactModel(CouplingModel):
     """Contact with a surface by penalty: fu_contact of engine/couplings/contact/contact.h.
 
     cable: -1 for a body, whose points are the attachments. on: the one attachment of the surface. direction (dim), in
-    its axes, and round_radius, in m: of the surface. N, weights, arc (m), hull, spread: of the points on a cable, as
-    in `along_elements` and `Hull`.
+    its axes, and round_radius, in m: of the surface. first, n_elements: elements of the cable in contact. N, weights,
+    arc (m), hull, spread: of the points on them, as in `along_elements` and `Hull`.
     """
 
     kernel: str
@@ -50,6 +51,8 @@ class ContactModel(CouplingModel):
     round_radius: float
     radius: float
     cable: int = -1
+    first: int = 0
+    n_elements: int = 0
     stiffness: float = 0.0
     damping: float = 0.0
     friction: float = 0.0
@@ -138,9 +141,12 @@ def _of_surface(surface: Surface, builder: ModelBuilder, wall: Geometry | None =
 
 
 def contact_models(builder: ModelBuilder) -> Iterator[ContactModel]:
-    """Yield the models of the contacts of a scene by penalty."""
-    return (_contact(contact, builder) for contact in builder.scene.contacts.values()
-            if not contact.is_hard and contact.a not in builder.scene.ropes)
+    """Yield the models of the contacts of a scene by penalty, of a cable one for each of its stretches."""
+    for part in builder.scene.contacts.values():
+        if not part.is_hard and part.a not in builder.scene.ropes:
+            cable = builder.scene.cables.get(part.a)
+            for stretch in (None,) if cable is None else part.stretches(cable):
+                yield _contact(part, builder, stretch)
 
 
 def rope_contact_models(builder: ModelBuilder) -> Iterator[RopeContactModel]:
@@ -148,7 +154,7 @@ def rope_contact_models(builder: ModelBuilder) -> Iterator[RopeContactModel]:
     for part in builder.scene.contacts.values():
         for span in (span for rope in builder.ropes if rope.part.name == part.a for span in rope.spans):
             friction = part.friction or Friction()
-            arguments = _by_penalty(part, builder)
+            arguments = _by_penalty(part, builder, part.radius)
             sticking = friction.coefficient if part.has_friction_spring else 0.0
             model = RopeContactModel(**arguments, type="rope contact", coordinates=span,
                                      friction=0.0 if sticking else friction.coefficient,
@@ -166,27 +172,27 @@ def _tangential(part: Contact, stiffness: float) -> float:
     return stiffness if part.tangential_stiffness is None else part.tangential_stiffness
 
 
-def _by_penalty(part: Contact, builder: ModelBuilder) -> dict[str, Any]:
-    """Return the arguments of a model that describe the surface of a contact and its normal force."""
-    assert part.stiffness is not None and part.radius is not None, f"{part.where} is not complete"
+def _by_penalty(part: Contact, builder: ModelBuilder, radius: float | None) -> dict[str, Any]:
+    """Return the arguments of a model that describe the surface of a contact and its normal force; radius: m."""
+    assert part.stiffness is not None and radius is not None, f"{part.where} is not complete"
     surface = builder.scene.surfaces[part.b]
     arguments = builder.once(("surface", part.b), lambda builder: _of_surface(surface, builder))
     entries = arguments["entries"]
     if entries["inside"] and arguments["shape"] == "box":  # its walls as seen by a sphere's centre
-        entries = entries | {"inset": part.radius, "half_size": entries["half_size"] - part.radius}
+        entries = entries | {"inset": radius, "half_size": entries["half_size"] - radius}
     return arguments | {"entries": entries, "name": part.name or "", "is_damped": part.damping > 0,
                         "stiffness": part.stiffness, "damping": part.damping, "hertz": int(part.exponent == 1.5),
-                        "radius": part.radius}
+                        "radius": radius}
 
 
-def _contact(part: Contact, builder: ModelBuilder) -> ContactModel:
+def _contact(part: Contact, builder: ModelBuilder, stretch: UniformPiece | None) -> ContactModel:
     scene = builder.scene
-    arguments = _by_penalty(part, builder)
-    entries = arguments["entries"] | {"length": 0.0, "n_hull": 0, "marks": NONE}
+    arguments = _by_penalty(part, builder, part.radius if stretch is None else part.radius_of(stretch.section))
+    entries = arguments["entries"] | {"first_element": 0, "start": 0.0, "stop": 0.0, "n_hull": 0, "marks": NONE}
     model = ContactModel(**arguments | {"entries": entries}, type="contact", friction=part.friction_coefficient,
                          tangential=_tangential(part, arguments["stiffness"]))
-    if part.a in builder.cable_index:
-        _along_cable(model, builder.cable_index[part.a], builder)
+    if stretch is not None:
+        _along_cable(model, builder.cable_index[part.a], stretch, builder)
         drawn = _drawn(model, builder) if part.friction_coefficient else NONE
     else:
         assert part.points is not None, f"{part.where} is not complete"
@@ -228,23 +234,28 @@ def _on_body(name: str, points: tuple[Vector, ...],
     return on, np.array([farthest]), np.array([body.point(point) for point in points])
 
 
-def _along_cable(model: ContactModel, index: int, builder: ModelBuilder) -> None:
-    """Add the quadrature on a cable."""
+def _along_cable(model: ContactModel, index: int, stretch: UniformPiece, builder: ModelBuilder) -> None:
+    """Add the quadrature on a stretch of a cable."""
     cable = builder.cables[index]
-    hull = builder.hull(index)
-    model.cable, model.n_points, model.hull, model.spread = index, GAUSS_POINTS, hull.points, hull.spread
-    model.entries |= {"length": cable.mesh.total, "n_hull": hull.points.shape[1]}
-    model.N, _, model.weights = along_elements(cable.kernel("on_axis"), cable.mesh.lengths, gauss(GAUSS_POINTS))
-    model.stride = 0 if cable.mesh.is_even else model.n_points
-    model.arc = _arc_lengths(cable.mesh, gauss(GAUSS_POINTS)[0])
+    hull, mesh = builder.hull(index), cable.mesh
+    first, end = stretch.first, stretch.end
+    own = slice(first, end)
+    stored = slice(None) if mesh.is_even else own  # of one element on an even mesh
+    model.cable, model.first, model.n_elements, model.n_points = index, first, end - first, GAUSS_POINTS
+    model.hull, model.spread = hull.points[stored], hull.spread[stored]
+    model.entries |= {"first_element": first, "start": float(mesh.boundaries[first]), "n_hull": hull.points.shape[1],
+                      "stop": mesh.total if end == cable.n_elements else float(mesh.boundaries[end])}
+    model.N, _, model.weights = along_elements(cable.kernel("on_axis"), mesh.lengths[stored], gauss(GAUSS_POINTS))
+    model.stride = 0 if mesh.is_even else model.n_points
+    model.arc = _arc_lengths(mesh, gauss(GAUSS_POINTS)[0]).reshape(cable.n_elements, -1)[own].ravel()
 
 
 def _drawn(model: ContactModel, builder: ModelBuilder) -> np.ndarray:
     """Return (n, 3): where the points on a cable are drawn."""
     cable = builder.cables[model.cable]
-    vectors = builder.scene.cables[cable.name].nodal_vectors
-    both = np.concatenate([vectors[cable.mesh.first], vectors[cable.mesh.last]], axis=1)
-    N = np.broadcast_to(model.N, (cable.n_elements, *model.N.shape[1:]))
+    vectors, own = builder.scene.cables[cable.name].nodal_vectors, slice(model.first, model.first + model.n_elements)
+    both = np.concatenate([vectors[cable.mesh.first][own], vectors[cable.mesh.last][own]], axis=1)
+    N = np.broadcast_to(model.N, (model.n_elements, *model.N.shape[1:]))
     return np.asarray(np.einsum("egk,ekd->egd", N, both).reshape(-1, 3))
 
 

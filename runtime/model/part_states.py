@@ -180,33 +180,40 @@ def _point_forces(model: Model, at: States, kind: str, asked: Asked) -> Values:
 
 
 def _contacts(model: Model, at: States, kind: str, asked: Asked) -> Values:
-    """Return the outputs of contacts; arc-lengths are NaN without contact."""
+    """Return the outputs of contacts, of stretches of a cable together; arc-lengths are NaN without contact."""
     found: Values = {}
+    numbers: dict[str, list[int]] = {}
     for k, contact in enumerate(model.contacts):
-        if not asked(contact.name):
+        numbers.setdefault(contact.name, []).append(k)
+    for name, own in numbers.items():
+        if not asked(name):
             continue
-        outputs = at.outputs(kind, k)
+        if len(own) > 1:
+            found[name] = _along_line(at, kind, own)
+            continue
+        outputs = at.outputs(kind, own[0])
         length = outputs["touching"]
-        active = length > 0 if contact.cable >= 0 else np.zeros(len(length), dtype=bool)
-        ends = {name: np.where(active, outputs[name], np.nan) for name in ("first", "last")}
-        found[contact.name] = outputs | ends | {"gap": np.full(len(length), np.nan)}
+        active = length > 0 if model.contacts[own[0]].cable >= 0 else np.zeros(len(length), dtype=bool)
+        ends = {end: np.where(active, outputs[end], np.nan) for end in ("first", "last")}
+        found[name] = outputs | ends | {"gap": np.full(len(length), np.nan)}
     return found
 
 
 def _rope_contacts(model: Model, at: States, kind: str, asked: Asked) -> Values:
-    """Return the results of contacts of ropes by name: sums and extremes over the outputs of their spans."""
-    found: Values = {}
-    for name in dict.fromkeys(contact.name for contact in model.rope_contacts):
-        spans = [k for k, contact in enumerate(model.rope_contacts) if contact.name == name]
-        of = outputs_by_name(kind, at.numbers[kind][:, spans])
-        touches = of["touching"] > 0
-        ends = {"first": np.where(touches, of["first"], np.inf).min(axis=1),
-                "last": np.where(touches, of["last"], -np.inf).max(axis=1)}
-        found[name] = {"force": of["force"].sum(axis=1), "friction_force": of["friction_force"].sum(axis=1),
-                       "penetration": of["penetration"].max(axis=1), "touching": of["touching"].sum(axis=1),
-                       **{end: np.where(np.isfinite(s), s, np.nan) for end, s in ends.items()},
-                       "gap": np.full(len(at.q), np.nan)}
-    return found
+    """Return the results of contacts of ropes by name."""
+    return {name: _along_line(at, kind, [k for k, contact in enumerate(model.rope_contacts) if contact.name == name])
+            for name in dict.fromkeys(contact.name for contact in model.rope_contacts)}
+
+
+def _along_line(at: States, kind: str, numbers: list[int]) -> dict[str, np.ndarray]:
+    """Return the results of a contact along a line: sums and extremes over the outputs of its parts, by number."""
+    of = outputs_by_name(kind, at.numbers[kind][:, numbers])
+    touches = of["touching"] > 0
+    ends = {"first": np.where(touches, of["first"], np.inf).min(axis=1),
+            "last": np.where(touches, of["last"], -np.inf).max(axis=1)}
+    return {"force": of["force"].sum(axis=1), "friction_force": of["friction_force"].sum(axis=1),
+            "penetration": of["penetration"].max(axis=1), "touching": of["touching"].sum(axis=1),
+            **{end: np.where(np.isfinite(s), s, np.nan) for end, s in ends.items()}, "gap": np.full(len(at.q), np.nan)}
 
 
 def _hard_contacts(model: Model, at: States, kind: str, asked: Asked) -> Values:

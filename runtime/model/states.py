@@ -222,13 +222,13 @@ def positions(cable: CableModel) -> np.ndarray:
 def distances(model: Model, scene: SceneData, contact: ContactModel, q: np.ndarray,
               elements: np.ndarray | None = None) -> np.ndarray:
     """Return (T, elements, points): distances in m of the points of a contact from its surface, in configurations q (T,
-    n_q), of some elements or of all.
+    n_q), of some of its elements, counted from its first, or of all.
     """
     cable, surface = model.cables[contact.cable], scene.surfaces[scene.contacts[contact.name].b]
-    elements = np.arange(cable.n_elements) if elements is None else elements
-    vectors, node = cable.nodal(q), cable.mesh.first_node(elements)
+    elements = np.arange(contact.n_elements) if elements is None else elements
+    vectors, node = cable.nodal(q), cable.mesh.first_node(contact.first + elements)
     both = np.concatenate([vectors[:, node], vectors[:, node + 1]], axis=2)
-    N = np.broadcast_to(contact.N, (cable.n_elements, *contact.N.shape[1:]))[elements]
+    N = np.broadcast_to(contact.N, (contact.n_elements, *contact.N.shape[1:]))[elements]
     points = spatial(np.einsum("egk,tekd->tegd", N, both))
     if surface.on is not None:
         frame = body_state(model, next(body for body in model.bodies if body.name == surface.on), q)

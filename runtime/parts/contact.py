@@ -1,14 +1,34 @@
 """Contact of cables and bodies with surfaces."""
 
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import model_validator
 
 from .friction import AnyFriction
 from .part import Part
+from .piece import UniformPiece
 from .quantity import all_of_engine
 from .schemas import POINT, Turning, checked, list_schema
-from .validation import Listed, Name, Vector, items, not_negative, number, positive, shown, vector3, within
+from .section import Section, outer_radius_of
+from .stretches import stretches
+from .validation import (
+    Listed,
+    Name,
+    Vector,
+    items,
+    not_negative,
+    number,
+    place_on,
+    positive,
+    show,
+    shown,
+    vector3,
+    within,
+)
+
+if TYPE_CHECKING:
+    from .cable import Cable
+    from .rope import Rope
 
 MAX_POINTS = 16
 """Of a body, as in engine/couplings/contact/contact.h."""
@@ -54,13 +74,15 @@ class Contact(Part):
     a: the cable, the rope or the body; a list, or "all" cables and bodies of the scene: a contact is added for each
         pair, and a name given gets a number
     b: the surface; or a list, or "all"
-    stiffness: N/m a length in m, or N/m; by default the weight penetrates by 1 % of the radius
+    stiffness: N/m a length in m, or N/m; by default the weight penetrates by 1 % of the radius, of pieces at most
     exponent: 1, or 1.5 (Hertz)
     damping: s/m (Hunt and Crossley)
     friction: Coulomb's coefficient, or a `Friction`, of cables and bodies with the model "stick", of ropes with either
     tangential_stiffness: of the spring of sticking friction, N/m; by default that of the normal force. Along a sticking
         cable or rope, tension decays over the length √(EA/tangential_stiffness)
-    radius: of the cable, m, by default that of its section, 0 for its centreline; of spheres about a body's points
+    radius: of the cable, m, by default that of its section, of each piece its own, 0 for its centreline; of spheres
+        about a body's points
+    start, stop: of a cable, arc-lengths of the nodes between which it has contact, m; by default all of it
     restitution: normal velocity after an impact over that before it, 0 to 1 (Newton)
     rest_velocity: normal velocity below which points stay in contact after an impact, m/s
     points: of a body, in its axes, m; by default its origin
@@ -88,6 +110,8 @@ class Contact(Part):
     friction: AnyFriction | None = None
     tangential_stiffness: Annotated[float, positive("N/m")] | None = None
     radius: Annotated[float, not_negative("m")] | None = None
+    start: Annotated[float, place_on("a")] | None = None
+    stop: Annotated[float, place_on("a")] | None = None
     restitution: Annotated[float, within(0, 1, ends=True)] | None = None
     rest_velocity: Annotated[float, positive("m/s")] = 1e-3
     points: Annotated[tuple[Vector, ...], checked(_points, {
@@ -98,6 +122,14 @@ class Contact(Part):
     def is_hard(self) -> bool:
         """Return whether it is a constraint in place of a stiffness."""
         return self.restitution is not None
+
+    def radius_of(self, section: Section) -> float | None:
+        """Return the radius of contact of a section, m; None where neither tells it."""
+        return outer_radius_of(section) if self.radius is None else self.radius
+
+    def stretches(self, line: "Cable | Rope") -> list[UniformPiece]:
+        """Return the elements of a cable or a rope in contact, by pieces with equal radii, see `UniformPiece`."""
+        return stretches(line, self.start, self.stop, self.radius_of)
 
     @property
     def friction_coefficient(self) -> float:
@@ -114,6 +146,12 @@ class Contact(Part):
     def _has_coulomb_friction(self) -> "Contact":
         if self.friction is not None:
             self.friction.check_coulomb()
+        return self
+
+    @model_validator(mode="after")
+    def _has_length(self) -> "Contact":
+        if self.start is not None and self.stop is not None and not self.start < self.stop:
+            raise ValueError(f"stop must be beyond start {show(self.start, 'm')}, got {show(self.stop, 'm')}")
         return self
 
     @model_validator(mode="after")

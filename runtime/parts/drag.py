@@ -15,6 +15,7 @@ from .polar import Polar
 from .quantity import all_of_engine
 from .schemas import AXIS, TENSOR, Turning, checked, list_of_lists, list_schema, number_schema
 from .section import Section, Tube, outer_radius_of
+from .stretches import stretches
 from .validation import (
     Matrix,
     Name,
@@ -198,24 +199,7 @@ class Drag(Part):
 
         Raises ValueError where the section of one of them has no diameter that drag needs.
         """
-        first, end = 0, line.n_elements
-        if self.start is not None or self.stop is not None:
-            assert not hasattr(line, "route"), f"{self.where} is of a cable"
-            first, end = (line.node(s) if s is not None else other
-                          for s, other in ((self.start, first), (self.stop, end)))
-        found: list[UniformPiece] = []
-        before: tuple[float, float, float] | None = None
-        for piece in line.uniform_pieces:
-            begin, last = max(piece.first, first), min(piece.end, end)
-            if begin >= last:
-                continue
-            sizes = self._sizes(piece.section)
-            if sizes == before:
-                found[-1] = found[-1]._replace(end=last)
-            else:
-                found.append(piece._replace(first=begin, end=last))
-            before = sizes
-        return found
+        return stretches(line, self.start, self.stop, self._sizes)
 
     def _sizes(self, section: Section) -> tuple[float, float, float]:
         """Return what forces depend on of a section, in m and m²."""

@@ -360,6 +360,11 @@ class DrawnCable(Fields):
         assert node is not None, f"{self.where} has no node at {s}"
         return node
 
+    def boundary(self, s: float) -> int:
+        """Return the number of the boundary of elements at arc-length ``s`` in m, where checks have found a node."""
+        node = self.node(s)
+        return node if self.is_open or not self.mesh.doubled else int(self.mesh.boundary_of_node[node])
+
     def node_at(self, s: float) -> int | None:
         """Return the number of the node at arc-length ``s`` in m, else None; a cable without mesh gets one anywhere."""
         if self.is_open:

@@ -386,6 +386,8 @@ class SceneMethods(SceneData):
         friction: Friction | float | None = None,
         tangential_stiffness: float | None = None,
         radius: float | None = None,
+        start: float | None = None,
+        stop: float | None = None,
         restitution: float | None = None,
         rest_velocity: float = 0.001,
         points: Points | None = None,

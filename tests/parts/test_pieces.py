@@ -241,6 +241,19 @@ def test_drags_of_parts_that_do_not_fit_are_refused():
         scene.drag("w", start=4, stop=6, normal=1.0)
 
 
+@pytest.mark.parametrize("materials", [(SOFT, SOFT), (SOFT, STIFF)])
+def test_a_drag_acts_on_the_part_that_it_names(materials):
+    """Beyond a joint, too, that has two nodes: buoyancy alone, of the part of the length."""
+    scene = taut("cable12", materials=materials)
+    scene.fluid("sea", density=1000)
+    scene.drag("w", start=7, stop=9, normal=0.0, tangential=0.0, name="d")
+    state = scene.equilibrium()
+    assert float(state["d.force"][1]) == pytest.approx(1000 * SECTION.area * 2 * 9.81, rel=1e-12)
+    before, after = (np.asarray(state.section_forces("w", s=[s])["force"]).ravel() for s in (6.99999, 9.00001))
+    weight = materials[1].density * SECTION.area * 9.81
+    assert abs(after[1] - before[1]) == pytest.approx(2 * (weight - 1000 * SECTION.area * 9.81), rel=1e-4)
+
+
 def test_what_needs_one_section_says_so():
     scene = taut("cable8p")
     with warnings.catch_warnings():

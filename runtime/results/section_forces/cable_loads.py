@@ -251,7 +251,7 @@ class CableLoads:
                 continue
             cable = self.model.cables[contact.cable]
             density, = self._at_points(
-                cable.n_elements, contact.n_points,
+                contact.n_elements, contact.n_points,
                 compute=lambda *at, number=number: (self._engine.contact_densities(number, *at),))
             self.spreads.setdefault(contact.cable, []).extend(
                 rule.spread(self.dim, density[:, k]) for k, rule in enumerate(rules_of(cable, contact)))

@@ -80,7 +80,7 @@ def _of_nodes(scene: SceneData, cable: Cable, model: CableModel, forces: Element
         ends += [(tie.cable, tie.s, tie.rotation == "rigid"), (tie.to, tie.at, tie.rotation == "rigid")]
     for on, at_s, keeps in ends:
         if on == cable.name:
-            node = int(model.mesh.boundary_of_node[cable.node(at_s)])
+            node = cable.boundary(at_s)
             directed[node] = directed.get(node, False) or keeps
     times = len(forces.e)
     for node, is_directed in directed.items():

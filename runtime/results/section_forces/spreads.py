@@ -85,9 +85,8 @@ def rules_of(cable: CableModel, of: DragModel | ContactModel) -> list[Rule]:
     places = (1 + gauss(of.n_points)[0]) / 2
     N_x, N_chord = getattr(of, "N_x", of.N), getattr(of, "N_chord", np.zeros(0))
     found = []
-    first = getattr(of, "first", 0)
-    for element in range(first, first + getattr(of, "n_elements", cable.n_elements)):
-        k, length = 0 if cable.mesh.is_even else element - first, cable.mesh.length(element)
+    for element in range(of.first, of.first + of.n_elements):
+        k, length = 0 if cable.mesh.is_even else element - of.first, cable.mesh.length(element)
         found.append(Rule(element, 0.0, length, length * places, of.weights[k], of.N[k], N_x[k],
                           N_chord[k] if N_chord.size else None))
     return found

@@ -24,14 +24,14 @@ def resolve_contact_edges(model: Model, scene: SceneData, q: np.ndarray) -> None
         if contact.cable >= 0 and not contact.hertz:
             depth = contact.radius - distances(model, scene, contact, q[None]).ravel()
             if np.any(depth > 0) and np.any(depth <= 0):
-                _weigh(contact, model.cables[contact.cable].n_elements, depth)
+                _weigh(contact, depth)
 
 
-def _weigh(contact: ContactModel, elements: int, depth: np.ndarray) -> None:
+def _weigh(contact: ContactModel, depth: np.ndarray) -> None:
     """Change the weights of the points next to a zero of the depth (points,)."""
     for name in ("weights", "N", "hull", "spread"):  # stored for one element on an even mesh
         of_one = getattr(contact, name)
-        setattr(contact, name, np.broadcast_to(of_one, (elements, *of_one.shape[1:])).copy())
+        setattr(contact, name, np.broadcast_to(of_one, (contact.n_elements, *of_one.shape[1:])).copy())
     contact.stride, weights = contact.n_points, contact.weights.ravel()
     ends, active = np.cumsum(weights), depth > 0
     for k in np.flatnonzero(active[:-1] != active[1:]):

@@ -39,9 +39,11 @@ class CoarseContact(Note):
         """Select the parts to measure."""
         self._coarse = []
         for contact in self.model.contacts:
-            if contact.cable >= 0 and (limit := resolved(self.scene, self.scene.contacts[contact.name])) is not None:
+            part = self.scene.contacts[contact.name]
+            if contact.cable >= 0 and (limit := resolved(self.scene, part, contact.radius)) is not None:
                 cable = self.model.cables[contact.cable]
-                apart = max_point_distance() * np.broadcast_to(cable.mesh.lengths, cable.n_elements)
+                own = slice(contact.first, contact.first + contact.n_elements)
+                apart = max_point_distance() * np.broadcast_to(cable.mesh.lengths, cable.n_elements)[own]
                 long = np.flatnonzero(apart > limit.chord)
                 if len(long):
                     self._coarse.append(_LongElements(contact, long, apart[long], *limit))

@@ -55,7 +55,7 @@ class _Strains:
         self.EA, self.EI, *_ = LineStiffness.of(self.part, model.dim)
         self.h = cable.mesh.all_lengths
         self.half_stiffness = 0.5 * self.EA * self.h
-        self.supported = sorted(int(cable.mesh.boundary_of_node[self.part.node(each.s)])
+        self.supported = sorted(self.part.boundary(each.s)
                                 for each in scene.supports if each.cable == cable.name)
         self.is_slack_in_compression = cable.gives_way
         if self.part.is_curved:

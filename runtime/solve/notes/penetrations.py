@@ -37,7 +37,7 @@ class Penetrations(Note):
         self._limits: dict[str, list[_Limit]] = {"contact": [], "rope contact": [], "crossing": []}
         contacts: list[ContactModel | RopeContactModel] = [*self.model.contacts, *self.model.rope_contacts]
         for contact in contacts:
-            radii = radius_of(self.scene, self.scene.contacts[contact.name]), contact.round_radius
+            radii = radius_of(self.scene, self.scene.contacts[contact.name], contact.radius), contact.round_radius
             radius = min((r for r in radii if r > 0), default=np.inf)
             self._limits[contact.type].append(
                 _Limit(contact.name, contact.stiffness, PENETRATION_LIMIT * radius, radius, "below its surface"))

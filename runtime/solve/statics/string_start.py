@@ -280,8 +280,10 @@ class _Line:
             if not (rests(contact) and contact.cable in self.group):
                 continue
             k = int(np.searchsorted(self.group, contact.cable))
-            share = np.convolve(self.lengths[k], (0.5, 0.5), "full")
-            free = np.logical_not(fixed[self.along[k]].all(axis=1))
+            own = slice(contact.first * self.parts, (contact.first + contact.n_elements) * self.parts)
+            share = np.zeros(len(self.along[k]))
+            share[own.start : own.stop + 1] = np.convolve(self.lengths[k][own], (0.5, 0.5), "full")
+            free = np.logical_not(fixed[self.along[k]].all(axis=1)) & (share > 0)
             at, share = self.along[k][free], share[free]
             normals, heights = self._below(contact, k, free)
             found.append((at, normals, heights + contact.radius, 1 / (share * _stiffness(

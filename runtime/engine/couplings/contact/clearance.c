@@ -19,7 +19,7 @@ fu_clearance fu_contact_clearance(const fu_model *model, const fu_coupling *coup
     fu_surface_at(model, &contact->surface, state, &on);
     for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
         double middle[3] = {0.0}, reach = contact->spread[0];
-        if (cable) reach = fu_sphere_about(cable, state->q, e, middle);
+        if (cable) reach = fu_sphere_about(cable, state->q, contact->first + e, middle);
         else memcpy(middle, fu_place_of_body(model, state, contact->attachments[0].body), sizeof(double) * (size_t)dim);
         found.gap = fmin(found.gap, fu_surface_clearance(dim, &contact->surface, &on, middle, reach) - contact->radius);
         if (carrier) found.lever = fmax(found.lever, fu_distance_between(dim, middle, carrier) + reach);

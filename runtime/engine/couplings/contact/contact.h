@@ -35,12 +35,13 @@ typedef struct {
     fu_coupling base;
     fu_surface surface;
     fu_contact_law law;
-    int cable;     /* -1: points of a body */
-    double radius; /* of the cable, or of the spheres about the points, m */
-    int n_points;  /* of an element; of the body */
-    int stride;    /* of shape functions and weights from one element's to the next's: 0 for equal elements */
-    const double *weights, *N, *arc; /* arc: arc-lengths of all points of the cable, m */
-    double length;                   /* of the cable, m */
+    int cable;             /* -1: points of a body */
+    double radius;         /* of the cable, or of the spheres about the points, m */
+    int n_points;          /* of an element; of the body */
+    int stride;            /* of shape functions and weights from one element's to the next's: 0 for equal elements */
+    int first, n_elements; /* elements of the cable on which it acts; the arrays begin at the first */
+    const double *weights, *N, *arc; /* arc: arc-lengths of all points on the cable, m */
+    double start, stop;              /* arc-lengths of the ends of these elements, m */
     int n_hull; /* points whose hull contains an element, from its vectors by `hull` (n_hull x vectors of an element) */
     const double *hull;
     /* of each vector of an element: its largest share in a point of the hull; of a body: the largest distance of its

@@ -11,7 +11,7 @@ int fu_contact_elements(const fu_model *model, const fu_contact *contact)
 {
     const fu_rope_contact *rope = fu_contact_on_span(contact);
     if (rope) return rope->on.n_elements;
-    return contact->cable >= 0 ? model->cables[contact->cable].n_elements : 1;
+    return contact->cable >= 0 ? contact->n_elements : 1;
 }
 
 double fu_contact_weight(const fu_contact *contact, int element, int point)
@@ -34,7 +34,7 @@ fu_friction_mark *fu_contact_mark(const fu_contact *contact, const fu_state *sta
 int fu_contact_first(const fu_model *model, const fu_contact *contact, int element)
 {
     const fu_cable *cable = &model->cables[contact->cable];
-    return fu_element_entry(cable, element);
+    return fu_element_entry(cable, contact->first + element);
 }
 
 /* Returns whether a sphere about an element's first node, larger than necessary but cheap, is off the surface by more

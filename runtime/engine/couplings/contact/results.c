@@ -85,7 +85,7 @@ typedef struct {
 static void take_into_length(tally *sum, double s, double depth)
 {
     fu_contact_output *numbers = sum->numbers;
-    if (!sum->begun) sum->depth = depth; /* from the start of the cable, s = 0 */
+    if (!sum->begun) sum->depth = depth; /* from the start */
     if (depth > 0.0 || sum->depth > 0.0) {
         const double part = sum->depth > 0.0 && depth > 0.0 ? 0.0 : sum->depth / (sum->depth - depth);
         const double cut = sum->s + part * (s - sum->s);
@@ -106,7 +106,7 @@ void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, cons
     const int n = fu_contact_elements(model, contact);
     fu_attachment_state on;
     fu_contact_output *numbers = (fu_contact_output *)out;
-    tally sum = {.numbers = numbers};
+    tally sum = {.numbers = numbers, .s = contact->start};
     (void)acceleration, (void)work;
     *numbers = (fu_contact_output){.penetration = 0.0};
     fu_surface_at(model, &contact->surface, state, &on);
@@ -127,7 +127,7 @@ void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, cons
             if (contact->cable < 0) numbers->touching += 1.0;
         }
     }
-    if (contact->cable >= 0) take_into_length(&sum, contact->length, sum.depth); /* to its end */
+    if (contact->cable >= 0) take_into_length(&sum, contact->stop, sum.depth); /* to its end */
 }
 
 /* Computes the force on each point, N/m or N, in order: out (points x 3). */
