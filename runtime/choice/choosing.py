@@ -37,8 +37,11 @@ def choose(scene: S, settings: RunSettings, quantities: Sequence[str], free: str
                       [_free(taken, name, scene.cables[name], free) for name in scene.cables])
     choice = chooser.choose()
     if unequal:
-        meshed = [each.cable.name for each in chooser.free if each.fixed is None]
-        choice = with_unequal_elements(choice, meshed, chooser.prober, chooser.time.probe_tol, chooser.time.probed)
+        meshed = [each.cable.name for each in chooser.free if each.fixed is None and each.cable.pieces is None]
+        choice.reasons += [f"{each.cable.where}: each of its pieces has equal elements" for each in chooser.free
+                           if each.cable.pieces is not None]
+        if meshed:
+            choice = with_unequal_elements(choice, meshed, chooser.prober, chooser.time.probe_tol, chooser.time.probed)
     if planar is not None:
         choice.reasons.insert(0, str(planar))
         choice.planar = str(planar) if planar.scene is not None else ""
@@ -70,11 +73,12 @@ def _keeps(cable: Cable, free: str) -> bool:
 def _free(scene: S, name: str, asked: Cable, free: str) -> Free:
     """Return the possible models of a cable of a scene; asked: the cable as the user gave it."""
     cable = scene.cables[name]
-    keeps_mesh = asked.pieces is not None or (free == "unset" and not asked.is_open)
+    keeps_mesh = free == "unset" and not asked.is_open
     given = asked.elements if keeps_mesh else None
     base = coarsest(scene, cable)
     if not base and given is None:
-        raise SceneError(cable.where, f"no mesh of up to {MAX_COARSEST_ELEMENTS} equal elements has nodes at all its "
+        which = "equal elements" if cable.pieces is None else "elements, equal in each piece,"
+        raise SceneError(cable.where, f"no mesh of up to {MAX_COARSEST_ELEMENTS} {which} has nodes at all its "
                          "supports", "give elements, or move a support")
     if _keeps(asked, free):
         kept = CableModel(cable.element, cable.law)

@@ -8,6 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..parts.cable import Cable
+from ..parts.piece import UniformPiece
 from ..parts.section import Section
 from ..results.run import Run
 from ..solve.notes.supersonic_loads import excess
@@ -39,21 +40,28 @@ def shear_compliance(cable: Cable, run: Run) -> float:
     kappa = np.cross(r_x, r_xx) / np.sum(r_x * r_x, axis=-1, keepdims=True)
     if cable.is_curved:
         kappa = kappa - kappa[:1]
-    bending = max(piece.material.youngs_modulus * piece.section.second_moment_about_z for piece in cable.uniform_pieces)
-    shear = _shear_stiffness(cable)
-    slope = np.diff(kappa, axis=1) / (cable.length / PARTS)
-    middle = (kappa[:, 1:] + kappa[:, :-1]) / 2
-    energy = float(np.sum(middle * middle))
+    parts = np.arange(2 * PARTS + 1) / (2 * PARTS) * cable.length  # the points, and the middles between them
+    element = cable.mesh.element_at(parts * (1 + 1e-12))
+    bending = cable.of_elements(
+        lambda piece: piece.material.youngs_modulus * piece.section.second_moment_about_z)[element]
+    shear = cable.of_elements(_shear_stiffness_of)[element][1::2]
+    axial = cable.of_elements(lambda piece: piece.material.youngs_modulus * piece.section.area)[element][1::2]
+    moment = bending[::2, None] * kappa
+    force = np.diff(moment, axis=1) / (cable.length / PARTS)
+    middle = (moment[:, 1:] + moment[:, :-1]) / 2
+    energy = float(np.sum(middle * middle / bending[1::2, None]))
     if energy == 0.0:
         return 0.0
-    rotary = shear / min(piece.material.youngs_modulus * piece.section.area for piece in cable.uniform_pieces)
-    return float(bending / shear * float(np.sum(slope * slope)) / energy * (1 + rotary))
+    return float(np.sum(force * force / shear[:, None])) / energy * (1 + float(np.max(shear / axial)))
 
 
 def _shear_stiffness(cable: Cable) -> float:
     """Return kGA of a cable's section in N, in the more flexible direction, the least of its pieces."""
-    return min(min(piece.section.shear_factors(piece.material.poisson())) * piece.material.lame()[1]
-               * piece.section.area for piece in cable.uniform_pieces)
+    return min(map(_shear_stiffness_of, cable.uniform_pieces))
+
+
+def _shear_stiffness_of(piece: UniformPiece) -> float:
+    return min(piece.section.shear_factors(piece.material.poisson())) * piece.material.lame()[1] * piece.section.area
 
 
 def softened(scene: S, names: Collection[str]) -> S:

@@ -92,13 +92,15 @@ def with_model(cable: Cable, model: CableModel) -> Cable:
 
 
 def coarsest(scene: SceneData, cable: Cable) -> int:
-    """Return the smallest number of equal elements with nodes at all supports, ties and watched nodes of a cable.
+    """Return the smallest number of equal elements with nodes at all supports, ties and watched nodes of a cable; of a
+    cable of pieces, of elements in the given ratio of the pieces.
 
     Nodes at point loads and joints are added where `MAX_ELEMENTS_FOR_LOADS` suffice. Every multiple has these nodes,
     too. 0 where no mesh of up to `MAX_COARSEST_ELEMENTS` has them.
     """
-    count = _common_division(_supported(scene, cable), cable.length)
-    on_nodes = _common_division(node_places(scene, cable), cable.length)
+    divide = _common_division if cable.pieces is None else _division_of_pieces
+    count = divide(_supported(scene, cable), cable)
+    on_nodes = divide(node_places(scene, cable), cable)
     return on_nodes if 0 < on_nodes <= max(count, MAX_ELEMENTS_FOR_LOADS) else count
 
 
@@ -119,8 +121,12 @@ def _supported(scene: SceneData, cable: Cable) -> list[float]:
     return [s for name, s in ends if name == cable.name] + watched
 
 
-def _common_division(places: list[float], length: float) -> int:
-    """Return the smallest number of equal parts of a length with borders at all places, 0 where it is too large."""
+def _common_division(places: list[float], cable: Cable) -> int:
+    """Return the smallest number of equal parts of a cable with borders at all places, 0 where it is too large."""
+    return _parts(places, cable.length)
+
+
+def _parts(places: list[float], length: float) -> int:
     count = 1
     for s in places:
         fraction = Fraction(s / length).limit_denominator(MAX_COARSEST_ELEMENTS)
@@ -128,3 +134,20 @@ def _common_division(places: list[float], length: float) -> int:
             return 0
         count = math.lcm(count, fraction.denominator)
     return count if count <= MAX_COARSEST_ELEMENTS else 0
+
+
+def _division_of_pieces(places: list[float], cable: Cable) -> int:
+    """Return the smallest number of elements of a cable of pieces, in their ratio, with nodes at all places, 0 where it
+    is too large.
+    """
+    assert cable.pieces is not None, f"{cable.where} has no pieces"
+    common = math.gcd(*(piece.elements for piece in cable.pieces))
+    start, factor, least = 0.0, 1, 0
+    for piece in cable.pieces:
+        near, elements = LENGTH_TOLERANCE * cable.length, piece.elements // common
+        within = [s - start for s in places if start + near < s < start + piece.length - near]
+        if not (count := _parts(within, piece.length)):
+            return 0
+        factor = math.lcm(factor, count // math.gcd(count, elements))
+        start, least = start + piece.length, least + elements
+    return factor * least if factor * least <= MAX_COARSEST_ELEMENTS else 0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, cast
 
 import numpy as np
@@ -129,11 +129,11 @@ def connected(scene: SceneData, name: str) -> set[str]:
     return {each for each in (*scene.cables, *scene.bodies) if each in found}
 
 
-def _moved(item: RouteItem, stretch: Mapping[str, float]) -> RouteItem:
-    """Return an item of a route at its share of the length of a cable that changes by a ratio, by name."""
-    if item.end.on is None or item.end.on not in stretch:
+def _moved(item: RouteItem, moves: Mapping[str, Callable[[float], float]]) -> RouteItem:
+    """Return an item of a route at its place on a cable that changes in length, by functions of the arc-length."""
+    if item.end.on is None or item.end.on not in moves:
         return item
-    return item.held_at(item.end.model_copy(update={"s": item.end.arc_length * stretch[item.end.on]}))
+    return item.held_at(item.end.model_copy(update={"s": moves[item.end.on](item.end.arc_length)}))
 
 
 def remade(part: Part, changes: Mapping[str, Any]) -> Part:
@@ -143,35 +143,47 @@ def remade(part: Part, changes: Mapping[str, Any]) -> Part:
     return part.remade(changes)
 
 
+def _place_after(cable: Cable, changed: Cable, ratio: float) -> Callable[[float], float] | None:
+    """Return the function from an arc-length on a cable to that on the changed one, by their lengths or, of pieces,
+    those of each piece; None where all stay.
+    """
+    if cable.pieces is not None and changed.pieces is not None and len(cable.pieces) == len(changed.pieces):
+        before, after = (np.cumsum([0.0, *(piece.length for piece in each)]) for each in (cable.pieces, changed.pieces))
+        return None if np.array_equal(before, after) else lambda s: float(np.interp(s, before, after))
+    return None if ratio == 1.0 else lambda s: s * ratio
+
+
 def following(scene: SceneData, changes: Mapping[int, Mapping[str, Any]]) -> dict[int, dict[str, Any]]:
     """Return changes of the parts of a scene with those of arc-lengths and nodes on cables that change in length.
 
-    An arc-length keeps its ratio to the length of the cable, unless it is among the changes.
+    An arc-length keeps its ratio to the length of the cable, of a cable of pieces its place in the piece, unless it is
+    among the changes.
 
     changes: values by keyword, by the number of the part. A hanging cable that becomes shorter than its span is drawn
     straight. Raises SceneError.
     """
     parts = list(scene.parts())
-    stretch = {}
+    moves: dict[str, Callable[[float], float]] = {}
     found = {k: dict(entries) for k, entries in changes.items()}
     for k, entries in found.items():
         if isinstance(part := parts[k], Cable) and entries:
             changed = cast(Cable, remade(part, entries))
-            ratio = stretch[part.name] = changed.length / part.length
+            ratio = changed.length / part.length
+            if (place := _place_after(part, changed, ratio)) is not None:
+                moves[part.name] = place
             if part.nodes is not None and ratio != 1.0:
                 entries.setdefault("nodes", [s * ratio for s in part.nodes])
             if changed.shape == "hanging" and not hangs(changed.drawn_length, changed.length):
                 entries["shape"] = "straight"
-    stretch = {name: ratio for name, ratio in stretch.items() if ratio != 1.0}
-    if not stretch:
+    if not moves:
         return found
     for k, part in enumerate(part.as_made() for part in parts):
-        moved: dict[str, Any] = {keyword: s * stretch[on] for keyword, on, s in on_cables(part) if on in stretch}
+        moved: dict[str, Any] = {keyword: moves[on](s) for keyword, on, s in on_cables(part) if on in moves}
         for name, value in part:
-            if isinstance(value, Attachment) and value.on in stretch and value.s is not None:
-                moved[name] = value.model_copy(update={"s": value.s * stretch[value.on]})
-        if isinstance(part, Rope) and any(item.end.on in stretch for item in part.route):
-            moved["route"] = [_moved(item, stretch) for item in part.route]
+            if isinstance(value, Attachment) and value.on in moves and value.s is not None:
+                moved[name] = value.model_copy(update={"s": moves[value.on](value.s)})
+        if isinstance(part, Rope) and any(item.end.on in moves for item in part.route):
+            moved["route"] = [_moved(item, moves) for item in part.route]
         if moved:
             found[k] = moved | found.get(k, {})
     return found

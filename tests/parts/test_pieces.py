@@ -175,12 +175,54 @@ def test_scene_files():
 
 
 def test_a_number_of_a_piece_is_adjusted():
-    """The length of a piece is found for a force, and the scene with it has that force."""
+    """The length of a piece is found for a force, and the scene with it has that force; parts keep their places in the
+    pieces.
+    """
     scene = taut("cable8p", elements=4)
+    scene.force("w", s=5, value=(0, -50, 0), name="at_joint")
+    scene.force("w", s=7.5, value=(0, -30, 0), name="beyond")
     wanted = 1.1 * float(np.asarray(scene.equilibrium()["w@10.force"])[0])
     found = scene.equilibrium(adjust={"w.pieces.0.length": (4.98, 5.0)}, to={"w@0.force.x": -wanted})
     again = found.scene.equilibrium()
     assert float(np.asarray(again["w@0.force"])[0]) == pytest.approx(-wanted, rel=1e-6)
+    length = found.scene.cables["w"].pieces[0].length
+    assert length < 5
+    assert [load.s for load in found.scene.loads.values()] == pytest.approx([length, length + 2.5], rel=1e-12)
+
+
+def test_a_sweep_over_the_length_of_a_piece():
+    """The weight on the upper end of a hanging line of two materials."""
+    scene = fu.Scene(gravity=(0, -9.81, 0))
+    scene.cable("w", start=(0, 0, 0), end=(0, -2, 0), element="cable8p", rest="straight", pieces=[
+        fu.Piece(length=1, section=SECTION, material=material, elements=2) for material in (SOFT, STIFF)])
+    scene.pin("w", s=0)
+    lengths = [0.9, 1.1]
+    table = fu.sweep(scene, {"w.pieces.1.length": lengths}, keep=["w@0.force.y"], workers=0, initial="equilibrium",
+                     duration=0.01, step=0.005, output_step=0.01)
+    weight = (SOFT.density + STIFF.density * np.array(lengths)) * SECTION.area * 9.81
+    assert np.asarray(table["w@0.force.y"])[:, 0] == pytest.approx(weight, rel=1e-9)
+
+
+@pytest.mark.parametrize("free", ["unset", "all"])
+def test_a_choice_of_elements_for_pieces(free):
+    """The pieces keep the ratio of their numbers of elements; the choice keeps the tolerance, and shear of slender
+    pieces counts little though their curvature jumps at the joint.
+    """
+    scene = fu.Scene(gravity=(0, -9.81, 0))
+    scene.cable("w", start=(0, 0, 0), end=(1, 0, 0), rest="straight", up=(0, 1, 0), pieces=[
+        fu.Piece(length=0.6, section=fu.Circle(radius=0.01), material=SOFT, elements=4),
+        fu.Piece(length=0.4, section=fu.Circle(radius=0.006), material=STIFF, elements=2)])
+    scene.clamp("w", s=0)
+    settings = {"duration": 0.1, "tol": 1e-2}
+    choice = scene.choose(**settings, free=free)
+    elements = [piece.elements for piece in choice.scene.cables["w"].pieces]
+    assert elements == [4, 2] if free == "unset" else elements[0] == 2 * elements[1] > 2
+    assert choice.scene.cables["w"].element == "cable8p", str(choice)
+    finer = choice.scene.replace("w", pieces=[piece.remade({"elements": 16})
+                                              for piece in choice.scene.cables["w"].pieces])
+    tips = [each.run(duration=0.1, tol=tol, output_step=0.02)["w.nodal_vectors"][:, -1, 0]
+            for each, tol in ((choice.scene, choice.scene.run_settings["tol"]), (finer, 1e-5))]
+    assert np.abs(tips[0] - tips[1]).max() < 1e-2 * np.abs(tips[1] - tips[1][0]).max()
 
 
 def test_a_sweep_over_a_number_of_a_piece():
