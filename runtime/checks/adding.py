@@ -16,6 +16,7 @@ from ..parts.crossing import Crossing
 from ..parts.drag import Drag
 from ..parts.event import Event
 from ..parts.fluid import Fluid
+from ..parts.ice import Ice
 from ..parts.joint import Joint
 from ..parts.load import Load
 from ..parts.part import Part
@@ -33,6 +34,7 @@ from .branch_placement import placed_branch
 from .contact_placement import placed_contact, placed_contacts, placed_surface
 from .crossing_placement import placed_crossing
 from .drag_placement import placed_drag, placed_fluid
+from .ice_placement import placed_ice
 from .joint_placement import placed_joint
 from .placement import placed_between, placed_event, placed_mass, placed_point_force, placed_support, placed_tie
 from .rope_placement import check_beside_ropes, placed_rope
@@ -85,7 +87,7 @@ def _lie_in_one_plane(cable: Cable, other: Cable) -> bool:
 _CHECKS: dict[type[Part], Callable[[SceneData, Any], Part]] = {
     Cable: placed_cable, Support: placed_support, Tie: placed_tie, Rope: placed_rope, Joint: placed_joint,
     Slide: placed_slide, Load: rope_loads.placed, PointForce: placed_point_force, PointMass: placed_mass,
-    Event: placed_event, Fluid: placed_fluid, Drag: placed_drag, Branch: placed_branch,
+    Event: placed_event, Fluid: placed_fluid, Drag: placed_drag, Branch: placed_branch, Ice: placed_ice,
     Crossing: placed_crossing, Surface: placed_surface, Contact: placed_contact}
 
 

@@ -24,6 +24,7 @@ from ..parts.surface import Surface
 from ..parts.surface_shapes import HeightField
 from ..parts.validation import show
 from .frames import plane_normal
+from .ice_placement import check_beside_ice
 from .placement import check_has_mass, node_at
 
 WEIGHT_PENETRATION = 0.01
@@ -203,6 +204,7 @@ def _of_cable(scene: SceneData, contact: Contact, cable: Cable) -> Contact:
                          "leave restitution out and give stiffness, in N/m a length")
     if contact.points is not None:
         raise SceneError(contact.where, f'acts along cable "{cable.name}" and takes no points', "leave points out")
+    check_beside_ice(scene, contact, contact.a)
     for name in ("start", "stop"):
         if (s := getattr(contact, name)) is not None:
             node_at(scene, contact.a, contact.where, s, name)

@@ -11,6 +11,7 @@ from ..parts.crossing_start import Start, radii, sign_of, start_of
 from ..parts.modal_body import ModalBody
 from ..parts.scene_data import OfDrawing, SceneData
 from ..parts.validation import LENGTH_TOLERANCE, show
+from .ice_placement import check_beside_ice
 from .placement import check_without_hinge, placed_attachment, report
 
 MIN_CROSSING_SINE = 1e-3
@@ -28,6 +29,7 @@ def placed_crossing(scene: SceneData, part: Crossing) -> Crossing:
     for name in (part.a, part.b or ""):
         if name in scene.cables:
             check_without_hinge(part.where, scene.cables[name])
+            check_beside_ice(scene, part, name)
     try:
         radius = radii(scene, part)
     except ValueError as error:

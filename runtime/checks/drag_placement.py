@@ -17,6 +17,7 @@ from ..parts.stretches import overlap
 from ..parts.validation import LENGTH_TOLERANCE, show
 from ..parts.velocity_table import VelocityTable
 from .frames import draws_section
+from .ice_placement import check_beside_ice
 from .placement import check_has_mass, node_at, placed_attachment
 
 PLACES = 65
@@ -191,6 +192,7 @@ def _check_cable(scene: SceneData, drag: Drag) -> None:
                          "take a spatial element, or leave lift out")
     _check_section(drag, cable)
     _check_acts(drag, cable)
+    check_beside_ice(scene, drag, drag.on)
 
 
 def _check_rope(scene: SceneData, drag: Drag, rope: Rope) -> None:

@@ -54,7 +54,11 @@ def densities(model: Model, drag: DragModel, time: np.ndarray, q: np.ndarray, v:
         f = f + forces[:, 0]
         couple = np.cross(t, forces[:, 1]) + np.cross(d, forces[:, 2])
         turning = Turning(*(values.reshape(r.shape) for values in (forces[:, 1], forces[:, 2], couple)))
-    return spatial(f.reshape(r.shape) + drag.buoyancy), turning
+    f = f.reshape(r.shape)
+    if drag.iced is None:
+        return spatial(f + drag.buoyancy), turning
+    growth, more = drag.iced.at(time)
+    return spatial(growth[:, None, None, None] * f + (drag.buoyancy + more)[:, None, None]), turning
 
 
 def at_rest(model: Model, drag: DragModel, q: np.ndarray) -> np.ndarray:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import field
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from ..parts.cable import Cable
 from ..parts.drag import Drag
 from ..parts.flow_profile import PowerProfile, TableProfile
 from ..parts.fluid import NO_SURFACE, Fluid
+from ..parts.ice import Ice
 from ..parts.piece import UniformPiece
 from ..parts.polar import Polar
 from ..parts.scene_data import SceneData
@@ -22,7 +24,9 @@ from ..parts.section import Section
 from ..parts.velocity_table import AXES
 from .attachments import AttachmentModel, ModelBuilder
 from .coupling import CouplingKind, CouplingModel, no_numbers
+from .ices import signal_of, thickness_at
 from .loads import GAUSS_POINTS
+from .signals import SignalModel
 from .span_coordinates import AlongSpan, SpanCoordinates
 
 MIN_SPEED = 1e-30
@@ -32,6 +36,32 @@ WAVE_NUMBERS = 5
 """Of a wave: amplitude, frequency, phase, size of k, and exp(-2 k depth), 0 for infinite depth."""
 
 KERNELS = {2: "planar_drag", 3: "drag"}
+
+
+@dataclass(eq=False, repr=False)
+class Iced:
+    """Growth of a drag with ice: number, factor in m and model of the signal of the thickness, diameters of drag and of
+    the cable under the ice, m, and the buoyancy of a ring by thickness (diameter + thickness), N/m³ (dim,).
+    """
+
+    signal: int
+    factor: float
+    thickness: SignalModel | None
+    width: float
+    diameter: float
+    buoyancy: np.ndarray
+
+    @property
+    def entries(self) -> dict[str, Any]:
+        """Return the fields that the engine reads."""
+        return {"ice_has_ice": 1, "ice_signal": self.signal, "ice_factor": self.factor, "ice_width": self.width,
+                "ice_diameter": self.diameter, "ice_buoyancy": self.buoyancy}
+
+    def at(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the factor of drag (T,), and the buoyancy (T, dim) in N/m that is added, at times (T,) in s."""
+        t = thickness_at(self.thickness, self.factor, time)
+        growth = 1 + 2 * t / self.width if self.width else np.ones(len(t))
+        return growth, (t * (self.diameter + t))[:, None] * self.buoyancy
 
 
 @dataclass(eq=False, repr=False)
@@ -62,6 +92,7 @@ class DragModel(AlongSpan, CouplingModel):
     bottom: float
     fluid: Fluid
     polar: Polar | None
+    iced: Iced | None = None
     cable: int = -1
     first: int = 0
     n_elements: int = 0
@@ -92,12 +123,28 @@ def drag_models(builder: ModelBuilder) -> Iterator[DragModel]:
         line = builder.scene.line(part.on)
         for fluid in builder.scene.fluids_of(part):
             for stretch in (None,) if line is None else part.stretches(line):
-                for span in spans.get(part.on, (None,)):
-                    yield _in_fluid(part, fluid, builder, stretch, span)
+                for own, ice in _iced(part, stretch, builder.scene):
+                    for span in spans.get(part.on, (None,)):
+                        yield _in_fluid(part, fluid, builder, own, span, ice)
+
+
+def _iced(part: Drag, stretch: UniformPiece | None, scene: SceneData
+          ) -> Iterator[tuple[UniformPiece | None, Ice | None]]:
+    """Yield the parts of a stretch of a cable with and without ice, and the ice."""
+    ices = [(under, ice) for ice in scene.ices.values() if ice.cable == part.on
+            for under in ice.stretches(scene.cables[part.on])]
+    if stretch is None or not ices:
+        yield stretch, None
+        return
+    cuts = {stretch.first, stretch.end, *(at for under, _ in ices for at in (under.first, under.end)
+                                          if stretch.first < at < stretch.end)}
+    for first, end in pairwise(sorted(cuts)):
+        on = next(((under, ice) for under, ice in ices if under.first <= first and end <= under.end), None)
+        yield stretch._replace(first=first, end=end), None if on is None else on[1]
 
 
 def _in_fluid(part: Drag, fluid: Fluid, builder: ModelBuilder, stretch: UniformPiece | None,
-              span: SpanCoordinates | None) -> DragModel:
+              span: SpanCoordinates | None, ice: Ice | None) -> DragModel:
     """Return the model of a drag in a fluid on a stretch of a cable, on a span of a rope, or on a body."""
     section = None if stretch is None else stretch.section
     scene, dim = builder.scene, builder.scene.dim
@@ -117,7 +164,10 @@ def _in_fluid(part: Drag, fluid: Fluid, builder: ModelBuilder, stretch: UniformP
         entries=table | _profile(fluid) | _waves(fluid, scene, up[:dim]) | _foil(part, fluid, dim) | {
             "extent": part.extent(section), "displaced": displaced, "added": (),
             "is_morison": part.added_mass_form == "morison",
-            "is_foil": part.polar is not None or (line is None and part.lift != 0)})
+            "is_foil": part.polar is not None or (line is None and part.lift != 0), **_without_ice()})
+    if ice is not None and section is not None:
+        model.iced = _growing(part, fluid, ice, section, builder)
+        model.entries |= model.iced.entries
     if model.has_inertia:
         added = part.added_of_body(dim) if line is None else part.added_of_cable()
         model.entries["added"] = (displaced * added).ravel()
@@ -132,6 +182,21 @@ def _in_fluid(part: Drag, fluid: Fluid, builder: ModelBuilder, stretch: UniformP
         else:
             model.coordinates = span
     return model
+
+
+def _without_ice() -> dict[str, Any]:
+    return {"ice_has_ice": 0, "ice_signal": -1, "ice_factor": 0.0, "ice_width": 0.0, "ice_diameter": 0.0,
+            "ice_buoyancy": ()}
+
+
+def _growing(part: Drag, fluid: Fluid, ice: Ice, section: Section, builder: ModelBuilder) -> Iced:
+    """Return how a drag grows with the ice on its cable; a displaced area that is given does not."""
+    has_width = part.normal or part.tangential or part.lift
+    diameter = ice.diameter_of(section)
+    assert diameter is not None, f"{ice.where} has no diameter"
+    displaced = fluid.density * np.pi if part.displaced_area is None else 0.0
+    return Iced(*signal_of(ice, builder), part.width(section) if has_width else 0.0, diameter,
+                -displaced * np.array(builder.scene.gravity)[: builder.scene.dim])
 
 
 def _point(part: Drag, builder: ModelBuilder) -> AttachmentModel:

@@ -27,6 +27,7 @@ from .coupling import CouplingModel
 from .crossings import CrossingModel
 from .drags import DragModel
 from .elimination import Elimination
+from .ices import IceModel
 from .joints import JointModel
 from .loads import AnyLoadModel, DeadLoadModel, LineLoadModel, LoadModel
 from .point_forces import PointForceModel
@@ -350,6 +351,7 @@ class Model:
     joints = _couplings_of(JointModel)  # first those between a rider's axes and its cable
     point_forces = _couplings_of(PointForceModel)
     drags = _couplings_of(DragModel)
+    ices = _couplings_of(IceModel)
     branches = _couplings_of(BranchModel)
     crossings = _couplings_of(CrossingModel)
     spans = _couplings_of(SpanModel)

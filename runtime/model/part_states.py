@@ -239,6 +239,16 @@ def _drags(model: Model, at: States, kind: str, asked: Asked) -> Values:
     return found
 
 
+def _ices(model: Model, at: States, kind: str, asked: Asked) -> Values:
+    """Return the results of ice by name: the mass of all its stretches."""
+    found: Values = {}
+    for k, ice in enumerate(model.ices):
+        outputs = at.outputs(kind, k)
+        before = found.get(ice.name)
+        found[ice.name] = outputs | ({} if before is None else {"mass": before["mass"] + outputs["mass"]})
+    return found
+
+
 def _branches(model: Model, at: States, kind: str, asked: Asked) -> Values:
     """Return the results of branches by name, at the points of their elements."""
     found: Values = {}
@@ -274,7 +284,7 @@ def _none(model: Model, at: States, kind: str, asked: Asked) -> Values:
 
 
 RESULTS = {"slide": _slides, "anchor": _ropes, "joint": _joints, "joint_friction": _none,
-           "point_force": _point_forces, "drag": _drags, "branch": _branches, "contact": _contacts,
+           "point_force": _point_forces, "drag": _drags, "ice": _ices, "branch": _branches, "contact": _contacts,
            "rope contact": _rope_contacts, "hard_contact": _hard_contacts,
            "taut_point": _taut_points, "taut_rope": _none}
 """Functions from outputs to results, of the kinds of couplings whose results are not the outputs themselves."""

@@ -21,6 +21,7 @@ from .load import Moment as Moment
 from .spring import Spring as Spring
 from .fluid import Fluid as Fluid
 from .drag import Drag as Drag
+from .ice import Ice as Ice
 from .branch import Relaxation as Relaxation
 from .branch import WireFriction as WireFriction
 from .crossing import Crossing as Crossing

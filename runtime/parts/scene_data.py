@@ -19,6 +19,7 @@ from .crossing import Crossing
 from .drag import Drag
 from .event import Event
 from .fluid import Fluid
+from .ice import Ice
 from .joint import Joint
 from .kinds import KINDS, plural_of
 from .load import DistributedForce, Force, Moment
@@ -119,6 +120,7 @@ class SceneData:
     point_forces: dict[str, PointForce]
     fluids: dict[str, Fluid]
     drags: dict[str, Drag]
+    ices: dict[str, Ice]
     branches: dict[str, Relaxation | WireFriction]
     crossings: dict[str, Crossing]
     surfaces: dict[str, Surface]

@@ -18,6 +18,7 @@ from .flow_profile import Profile
 from .fluid import Fluid
 from .force_segments import ForceTable
 from .friction import Friction
+from .ice import Ice
 from .joint import Joint
 from .load import DistributedForce, Force, Moment
 from .material import Material
@@ -324,6 +325,19 @@ class SceneMethods(SceneData):
         name: str | None = None,
     ) -> Drag:
         """Add a Drag, which see."""
+
+    def ice(
+        self,
+        cable: Named,
+        *,
+        thickness: Scale,
+        density: float = 900.0,
+        start: float | None = None,
+        stop: float | None = None,
+        diameter: float | None = None,
+        name: str | None = None,
+    ) -> Ice:
+        """Add a Ice, which see."""
 
     def relaxation(
         self,

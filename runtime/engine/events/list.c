@@ -19,6 +19,7 @@
     WITH_EVENTS(taut_rope)                                                                                             \
     WITH_EVENTS(point_force)                                                                                           \
     WITH_EVENTS(drag)                                                                                                  \
+    ALONE(ice)                                                                                                         \
     WITH_EVENTS(crossing)                                                                                              \
     WITH_EVENTS(contact)                                                                                               \
     ALONE(branch)                                                                                                      \

@@ -244,6 +244,21 @@ class CableLoads:
             yield FluidPart(rule, density[rows][None], None if on_slope is None else on_slope[rows][None],
                             None if M is None else M[rows][None])
 
+    def _ices(self) -> None:
+        """Add the weight and the mass of ice."""
+        for ice in self.model.ices:
+            if ice.cable not in self.cables:
+                continue
+            cable, mass = self.model.cables[ice.cable], ice.mass_at(self.at.time)
+            weight = self.at.load * spatial(mass[:, None] * ice.gravity)
+            M = mass[:, None, None] * np.eye(self.dim)
+            for rule in rules_of(cable, ice):
+                points = len(rule.x)
+                self.spreads.setdefault(ice.cable, []).append(
+                    rule.spread(self.dim, np.repeat(weight[:, None], points, axis=1)))
+                self.added.setdefault(ice.cable, AddedMass(cable, [])).parts.append(
+                    (rule, np.repeat(M[:, None], points, axis=1)))
+
     def _contacts(self) -> None:
         """Add the pressure of surfaces; `out_of_balance` says which contacts are known."""
         for number, contact in enumerate(self.model.contacts):
@@ -364,7 +379,8 @@ class CableLoads:
 
 COLLECTED: dict[str, Callable[[CableLoads], None]] = {
     "dead load": CableLoads._loads, "slide": CableLoads._slides, "joint": CableLoads._joints,
-    "drag": CableLoads._drags, "crossing": CableLoads._crossings, "contact": CableLoads._contacts}
+    "drag": CableLoads._drags, "ice": CableLoads._ices, "crossing": CableLoads._crossings,
+    "contact": CableLoads._contacts}
 """Methods by kind of coupling, "dead load" for all loads. Other kinds act on one end, or on two by opposite forces."""
 
 

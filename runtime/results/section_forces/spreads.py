@@ -11,6 +11,7 @@ from ...base.quadrature import gauss
 from ...model.contacts import ContactModel
 from ...model.drag_forces import Turning
 from ...model.drags import DragModel
+from ...model.ices import IceModel
 from ...model.model import CableModel
 from ...model.states import spatial
 from ...parts.validation import LENGTH_TOLERANCE
@@ -80,8 +81,8 @@ class Rule(Quadrature):
                       None if turning is None else turning.couple)
 
 
-def rules_of(cable: CableModel, of: DragModel | ContactModel) -> list[Rule]:
-    """Return the rules of a drag or contact, one for each element of its cable."""
+def rules_of(cable: CableModel, of: DragModel | ContactModel | IceModel) -> list[Rule]:
+    """Return the rules of a drag, a contact or ice, one for each element of its cable."""
     places = (1 + gauss(of.n_points)[0]) / 2
     N_x, N_chord = getattr(of, "N_x", of.N), getattr(of, "N_chord", np.zeros(0))
     found = []

@@ -121,6 +121,11 @@ def _string_loads(problem: StaticProblem, q: np.ndarray) -> np.ndarray:
             force[load.dofs] += p * scale * np.array(load.values)
         else:
             force -= engine.external_forces(k, k + 1)[0]
+    for ice in model.ices:
+        cable, mass = model.cables[ice.cable], p * float(ice.mass_at(np.zeros(1))[0])
+        weights = np.broadcast_to(mass * ice.shares, (ice.n_elements, ice.shares.shape[1]))
+        for k, own in enumerate(weights):
+            force[cable.dofs_of(ice.first + k)] += np.outer(own, ice.gravity).ravel()
     for drag in model.drags:
         if drag.cable >= 0:
             _add_drag(model, drag, q, p, force)

@@ -48,7 +48,7 @@ FU_INLINE void act(int dim, const fu_drag *drag, const fu_drag_block *block, int
     const fu_block_motion *at = &block->motion;
     for (int d = 0; d < dim; ++d) {
         out->w[d] = block->fluid.U[d] - at->v[d];
-        out->buoyancy[d] = (fu_points){0.0} + drag->buoyancy[d];
+        out->buoyancy[d] = c->buoyancy[d];
     }
     if (with_derivatives) c->kernel->along_cable(at->r_x, out->w, c->coefficients, out->f, out->by_slope, out->by_w);
     else c->kernel->force_along_cable(at->r_x, out->w, c->coefficients, out->f);

@@ -239,6 +239,7 @@ static const char *const wetted[] = {"all", "section", "sphere", "column", 0};
 static const char *const profiles[] = {"uniform", "power", "table", 0};
 #define FLOW_FIELD(member, kind, words) {#member, kind, offsetof(fu_drag, flow.member), 1, 0, words}
 #define WAVES_FIELD(member, kind) {#member, kind, offsetof(fu_drag, waves.member), 1, 0, NULL}
+#define ICED_FIELD(member, kind) {"ice_" #member, kind, offsetof(fu_drag, iced.member), 1, 0, NULL}
 #define FLOW_VECTOR(member) {#member, FU_REAL, offsetof(fu_drag, flow.member), 3, sizeof(double), NULL}
 
 static const fu_field fields[] = {
@@ -283,6 +284,12 @@ static const fu_field fields[] = {
     FU_FIELD(fu_drag, polar_lift, FU_REALS, 0),
     FU_FIELD(fu_drag, polar_moment, FU_REALS, 0),
     FU_FIELD_ARRAY(fu_drag, buoyancy, FU_REAL),
+    ICED_FIELD(has_ice, FU_INTEGER),
+    ICED_FIELD(signal, FU_INTEGER),
+    ICED_FIELD(factor, FU_REAL),
+    ICED_FIELD(width, FU_REAL),
+    ICED_FIELD(diameter, FU_REAL),
+    {"ice_buoyancy", FU_REAL, offsetof(fu_drag, iced.buoyancy), 3, sizeof(double), NULL},
     FU_FIELD(fu_drag, wet, FU_WORD, wetted),
     FU_FIELD(fu_drag, extent, FU_REAL, 0),
     FU_FIELD(fu_drag, surface, FU_REAL, 0),

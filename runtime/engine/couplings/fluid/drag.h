@@ -57,6 +57,14 @@ typedef struct {
  * a circle, a sphere, or a column (couplings/fluid/wetness.c). */
 enum { FU_ALL_WET, FU_WET_SECTION, FU_WET_SPHERE, FU_WET_COLUMN };
 
+/* A ring of ice on a cable, see couplings/ice/ice.h: whether there is one, and its thickness, a signal times a factor.
+ * Diameters of drag and of the cable under the ice, m; buoyancy of a ring by thickness (diameter + thickness), N/m^3.
+ */
+typedef struct {
+    int has_ice, signal;
+    double factor, width, diameter, buoyancy[3];
+} fu_iced;
+
 /* The force of a fluid on a whole cable, on a span of a rope, or on a point of a body. */
 typedef struct {
     fu_coupling base; /* base.has_inertia: with added mass */
@@ -76,6 +84,7 @@ typedef struct {
     int n_angles;      /* segments of the polynomials of the coefficients by the angle, in the form of a signal; */
     const double *angles, *polar_drag, *polar_lift, *polar_moment; /* polar_moment: of a beam alone */
     double buoyancy[3];     /* N/m a length of the undeformed cable, N on a body */
+    fu_iced iced;           /* of a cable, which has no inertia of the fluid and no polar, and no surface cuts it */
     int wet;                /* FU_ALL_WET, ..., FU_WET_COLUMN */
     double extent;          /* half the height of the wetted shape, m */
     double surface, bottom; /* heights of the fluid, m */
@@ -173,7 +182,7 @@ typedef struct {
 typedef struct {
     const fu_drag_blocks *kernel;
     int is_morison;
-    fu_points coefficients[3], lift[2], section[3], added[2], displaced;
+    fu_points coefficients[3], lift[2], section[3], added[2], displaced, buoyancy[3];
 } fu_block_constants;
 
 /* A block of points from the k-th of an element on, whose first dof is `first`. */

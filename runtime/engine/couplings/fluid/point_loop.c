@@ -3,6 +3,7 @@
 #include "bodies/unknowns.h"
 #include "couplings/common/point_lanes.h"
 #include "couplings/fluid/drag.h"
+#include "couplings/ice/ice.h"
 
 #include <string.h>
 
@@ -11,7 +12,19 @@ static void broadcast(int n, const double *x, fu_points *out)
     for (int i = 0; i < n; ++i) out[i] = (fu_points){0.0} + x[i];
 }
 
-static fu_block_constants constants_of(const fu_drag *drag)
+/* Lets the diameter of a cable under ice grow by twice its thickness. */
+static void grow(const fu_model *model, const fu_drag *drag, double t, fu_block_constants *out)
+{
+    const fu_iced *iced = &drag->iced;
+    const double thickness = fu_ice_thickness(model, iced->signal, iced->factor, t, 0);
+    const double growth = iced->width > 0.0 ? 1.0 + 2.0 * thickness / iced->width : 1.0;
+    const double ring = thickness * (iced->diameter + thickness);
+    for (int i = 0; i < 2; ++i) out->coefficients[i] *= growth;
+    out->lift[0] *= growth;
+    for (int d = 0; d < 3; ++d) out->buoyancy[d] += ring * iced->buoyancy[d];
+}
+
+static fu_block_constants constants_of(const fu_model *model, const fu_drag *drag, double t)
 {
     fu_block_constants out = {.kernel = fu_drag_blocks_of(drag->kernel->name), .is_morison = drag->is_morison};
     broadcast(3, drag->coefficients, out.coefficients);
@@ -19,6 +32,8 @@ static fu_block_constants constants_of(const fu_drag *drag)
     broadcast(3, drag->section, out.section);
     broadcast(2, drag->added, out.added);
     broadcast(1, &drag->displaced, &out.displaced);
+    broadcast(3, drag->buoyancy, out.buoyancy);
+    if (drag->iced.has_ice) grow(model, drag, t, &out);
     return out;
 }
 
@@ -78,7 +93,7 @@ void fu_drag_visit(const fu_model *model, const fu_drag *drag, const double *q, 
     const fu_cable *cable = &model->cables[drag->cable];
     const int all = cable->coordinates, n_shapes = all / model->dim;
     const int points_alike = !drag->stride && drag->wet == FU_ALL_WET; /* of all elements */
-    const fu_block_constants constants = constants_of(drag);
+    const fu_block_constants constants = constants_of(model, drag, loop->t);
     int is_first = 1;
     double K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
     fu_drag_points points;
