@@ -322,6 +322,7 @@ LOADS: dict[str, Callable[[Site], object]] = {
     "moment": lambda on: on.scene.moment("wire", s=on.at(0.3), value=(0, 0, 0.01)),
     "force on a body": lambda on: on.scene.force(on.held("B", tuple(on.below(0.7, 0.3))), value=(1, 0, 0),
                                                  at=(0, 0.05, 0), follower=True),
+    "ice": lambda on: on.scene.ice("wire", thickness=fu.Ramp(start=0, end=TIME, before=0, after=0.002), diameter=0.02),
     "point mass": lambda on: on.scene.point_mass("wire", s=on.at(0.3), mass=0.2),
     "moment on a body": lambda on: on.scene.moment(on.held("B", tuple(on.below(0.7, 0.3))), value=(0, 0, 0.01)),
     "spring": partial(_sprung, stiffness=50, damping=0.5, length=0.2),

@@ -137,6 +137,7 @@ def everything() -> fu.Scene:
     scene.event("low", quantity="B.position.y", value=-2)
     scene.fluid("air", density=1.2, velocity=(3, 0, 0))
     scene.drag("rope", fluid="air", normal=1.2, name="gust")
+    scene.ice("bar", thickness=0.01, name="rime")
     scene.surface("bed", fu.Plane(point=(0, -5, 0)))
     scene.surface("side", fu.Plane(point=(0, -6, 0)))
     scene.contact("hook", "bed", name="landing")
@@ -202,7 +203,9 @@ OTHERS = {
              "name": "x"},
     "surface": {"name": "floor", "shape": fu.HeightField(x=(0, 1), heights=(-7, -8)), "on": "B", "at": (0, -1, 0)},
     "contact": {"a": "rope", "b": "side", "stiffness": 1e4, "exponent": 1.5, "damping": 0.1, "friction": 0.2,
-                "tangential_stiffness": 1e5, "radius": 0.02, "name": "x"},
+                "tangential_stiffness": 1e5, "radius": 0.02, "start": 0.25, "stop": 0.75, "name": "x"},
+    "ice": {"cable": "hook", "thickness": 0.02, "density": 600.0, "start": 0.25, "stop": 0.75, "diameter": 0.03,
+            "name": "x"},
     "relaxation": {"cable": "rope", "stiffness": 2e3, "time": 0.7, "name": "other"},
     "wire_friction": {"cable": "rope", "stiffness": 0.7, "moment": 0.2, "name": "other"},
     "crossing": {"a": "hook", "b": "A", "at": (0, 0.6, 0), "axis": (0, 1, 1), "length": 0.3, "radius": 0.02,
@@ -217,6 +220,7 @@ REFUSED = {
     ("moment", "on"): 'acts on body "B" and takes no arc-length s',
     ("force", "offsets"): "offsets and shares are of a force that moves",
     ("force", "shares"): "offsets and shares are of a force that moves",
+    ("ice", "cable"): 'is on a cable with the contact "landing"',
     ("cable", "name"): 'there is no cable "rope"',
     ("rigid_body", "name"): 'there is no cable or body "A"',
     ("fluid", "name"): 'there is no fluid "air"',

@@ -39,6 +39,7 @@ def everything() -> fu.Scene:
     scene.spring(("n-rope", 1.0), ("n-bar", (0.5, 0, 0)), stiffness=1.0, name="n-spring")
     scene.fluid(density=1.2, name="n-air")
     scene.drag("n-rope", normal=1.0, name="n-drag")
+    scene.ice("n-second", thickness=0.01, name="n-ice")
     scene.point_mass("n-rope", s=0.5, mass=0.1, name="n-clump")
     scene.relaxation("n-rope", stiffness=1e3, time=0.5, name="n-relaxation")
     scene.wire_friction("n-rope", stiffness=0.5, moment=0.1, name="n-wires")
