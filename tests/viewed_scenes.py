@@ -87,3 +87,18 @@ def riser() -> fu.Scene:
     scene.force("riser", s=fu.Ramp(start=0, end=1.0, before=20, after=40), value=(0, -2e3, 0), name="walk",
                 scale=fu.Ramp(start=0, end=1.0))
     return scene
+
+
+def sea() -> fu.Scene:
+    """Return a line from a bed to the surface of a sea of three waves, two of them askew."""
+    scene = fu.Scene(gravity=(0, -9.81, 0))
+    scene.cable("line", start=(-8, -10, 0), end=(4, 0, 0), elements=6, element="cable12",
+                section=fu.Circle(radius=0.1),
+                material=fu.Material(youngs_modulus=1e8, poisson_ratio=0.3, density=1500))
+    scene.pin("line", s=0)
+    scene.pin("line", s=scene.cables["line"].length)
+    scene.fluid("sea", density=1025, surface=0.5, depth=12.0, waves=[
+        fu.Wave(amplitude=0.7, period=3.5, phase=0.3), fu.Wave(amplitude=0.3, period=2.5, direction=(1, 0, 1)),
+        fu.Wave(amplitude=0.2, period=2.0, direction=(0, 0, 1))])
+    scene.drag("line", normal=1.2)
+    return scene

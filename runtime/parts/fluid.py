@@ -6,6 +6,7 @@ from typing import Annotated
 import numpy as np
 from pydantic import model_validator
 
+from ..base.linear_waves import elevation
 from .flow_profile import AnyProfile
 from .part import Part
 from .signal import ONE, AnySignal
@@ -31,7 +32,7 @@ class Fluid(Part):
     table: velocity in time and space, a `VelocityTable`, in the place of velocity and profile
     waves: on the surface, linear `Wave` s or those of `jonswap`, with the current added. What is wet, buoyancy with it,
         follows their elevation at the place; the acceleration of the fluid acts where a `Drag` has added_mass, also 0.
-        Statics and modes have none.
+        Statics and modes have none, in their pictures, too.
         The velocity at the height z above the still level is that at (z - elevation)/(1 + elevation/depth) (Wheeler)
     depth: of the water below the still level, m; None: infinite
     """
@@ -96,16 +97,18 @@ class Fluid(Part):
         """Return k of its waves, 1/m, in the gravity in m/s²."""
         return np.array([wave.wave_number(gravity, self.depth) for wave in self.waves or ()])
 
+    def components(self, gravity: float) -> np.ndarray:
+        """Return its waves (n, 6) as `funicular.base.linear_waves` takes them, in the gravity in m/s²."""
+        rows = [[wave.amplitude, wave.frequency, wave.phase, *(k * wave.ahead)]
+                for wave, k in zip(self.waves or (), self.wave_numbers(gravity), strict=True)]
+        return np.array(rows).reshape(-1, 6)
+
     def elevation(self, time: np.ndarray, place: np.ndarray, gravity: float = 9.81) -> np.ndarray:
         """Return the elevation of its surface above the still level, m, at times (s) and places (..., 3) in m.
 
         gravity: m/s².
         """
-        found = np.zeros(np.broadcast_shapes(np.shape(time), np.shape(place)[:-1]))
-        for wave, k in zip(self.waves or (), self.wave_numbers(gravity), strict=True):
-            theta = k * (place @ wave.ahead) - wave.frequency * np.asarray(time) + wave.phase
-            found = found + wave.amplitude * np.cos(theta)
-        return found
+        return elevation(self.components(gravity), time, place)
 
     def velocity_at(self, time: np.ndarray, height: np.ndarray, place: np.ndarray | None = None) -> np.ndarray:
         """Return the velocity (..., 3) in m/s at times (s), heights (m) and, for a table, places (..., 3) in m."""

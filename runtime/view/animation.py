@@ -59,7 +59,10 @@ class BodyShape:
     "radius": r, "length": l, "axis": [x, y, z]}``, ``{"kind": "wheel", "radius": r, "width": w}`` about z, with one
     wide spoke along x, or ``{"kind": "mesh", "vertices": (V, 3) array, "triangles": (F, 3) array}``, each with
     ``"offset": [x, y, z]``, its centre in axes of the body; ``"sheet": "water"`` or
-    ``"ground"``: the surface of a fluid, or a part of an unbounded surface, without thickness.
+    ``"ground"``: the surface of a fluid, or a part of an unbounded surface, without thickness. The first is ``{"kind":
+    "water", "size": s, "along": [x, y, z], "across": [x, y, z], "up": [x, y, z], "cells": [n, m], "waves": (W, 6)
+    array}``, a square to the distance s from its middle along two level sides, in so many cells, with waves over time
+    as in `funicular.base.linear_waves`, without an offset.
     """
 
     name: str

@@ -111,9 +111,9 @@ class Film:
         from matplotlib.colors import to_rgba
 
         for body in clip.bodies:
-            if body.shape["kind"] != "wheel":
+            if body.shape["kind"] != "wheel" and "sheet" not in body.shape:
                 self.panel.line(body.position[: frame + 1], color="0.6", linewidth=0.7, zorder=1)
-            self.panel.body(body, frame, to_rgba(colour))
+            self.panel.body(body, frame, float(clip.time[frame]), to_rgba(colour))
         for cable in clip.cables:
             points = self.view.of(cable.position[frame])
             lines = LineCollection(list(np.stack([points[:-1], points[1:]], axis=1)), linewidths=3, colors=colour,

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .animation import Animation, BodyShape, Clip, at_frame
 from .projections import Directions, Projection, all_points, directions
-from .surfaces import outline, placed_surface, spoke
+from .surfaces import outline, placed_surface, spoke, wave_lines
 
 if TYPE_CHECKING:
     from matplotlib.cm import ScalarMappable
@@ -44,6 +45,9 @@ SEGMENTS: dict[str, dict[str, Any]] = {
     "joint": {"linestyle": (0, (5, 1)), "linewidth": 1.2},
 }
 LOAD_COLOUR = "#b3261e"
+WAVE_LINES, MAX_CELLS = 9, 32
+"""Of the surface of a fluid: lines each way in an oblique view, and cells along a side in perspective."""
+ROUNDING = 1e-9
 PANEL_HEIGHT = 0.45
 """Height of a flat picture over its width."""
 MENU_CLIPS = 6
@@ -113,8 +117,8 @@ class Panel:
         """Draw an arrow from point to point (3,)."""
         self.line(np.stack([start, end]), color=LOAD_COLOUR, linewidth=1.2, zorder=3, label=label)
 
-    def body(self, body: BodyShape, frame: int, colour: Any) -> None:
-        """Draw the shape of a body."""
+    def body(self, body: BodyShape, frame: int, time: float, colour: Any) -> None:
+        """Draw the shape of a body at a frame and its time."""
         raise NotImplementedError
 
     def finish(self) -> None:
@@ -136,13 +140,20 @@ class PlanePanel(Panel):
         self.axes.annotate("", self.points(end), self.points(start), zorder=4,
                            arrowprops={"arrowstyle": "-|>", "color": LOAD_COLOUR, "shrinkA": 0, "shrinkB": 0})
 
-    def body(self, body: BodyShape, frame: int, colour: Any) -> None:
-        """Draw the outline of a body's shape, of a wheel with its wide spoke, or a dot."""
+    def body(self, body: BodyShape, frame: int, time: float, colour: Any) -> None:
+        """Draw the outline of a body's shape, of a wheel with its wide spoke, or a dot; of water lines on its surface.
+        """
+        shape: Mapping[str, Any] = body.shape
+        if shape["kind"] == "water" and (seen := self.projection.foreshortened(shape["up"])) > ROUNDING:
+            edge_on = seen > 1 - ROUNDING
+            for line in wave_lines(body, frame, time, 1 if edge_on else WAVE_LINES):
+                self.line(line, color=(*colour[:3], 1.0 if edge_on else 0.4), linewidth=0.8, zorder=3)
+            return
         if self.stretch > 1:
             self.dots(body.position[frame : frame + 1], color=colour, marker="h", s=48, edgecolors="0.1",
                       linewidths=0.7, zorder=4)
             return
-        corners = outline(self.projection.of(placed_surface(body, frame)[0]))
+        corners = outline(self.projection.of(placed_surface(body, frame, time)[0]))
         is_wheel = body.shape["kind"] == "wheel"
         self.axes.fill(*corners.T, facecolor=(*colour[:3], 0.0 if is_wheel else 0.25), edgecolor=colour, linewidth=0.8,
                        zorder=3)
@@ -167,11 +178,14 @@ class SpacePanel(Panel):
         super().__init__(axes, lambda points: points @ seen.matrix)
         self.names = seen.names
 
-    def body(self, body: BodyShape, frame: int, colour: Any) -> None:
+    def body(self, body: BodyShape, frame: int, time: float, colour: Any) -> None:
         """Draw the surface of a body's shape."""
         from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-        vertices, triangles = placed_surface(body, frame)
+        if body.shape["kind"] == "water":
+            cells = [min(each, MAX_CELLS) for each in body.shape["cells"]]  # type: ignore[attr-defined]
+            body = replace(body, shape={**body.shape, "cells": cells})
+        vertices, triangles = placed_surface(body, frame, time)
         self.axes.add_collection3d(Poly3DCollection(self.points(vertices)[triangles], facecolors=(*colour[:3], 0.35),
                                                     edgecolors="none"))
 
@@ -261,11 +275,12 @@ def draw_clip(panel: Panel, clip: Clip, frames: np.ndarray, colours: list[Any], 
             label = None
     for number, body in enumerate(clip.bodies):
         called = body.name if named and number < MAX_IN_LEGEND else None
-        if len(frames) > 2 and body.shape["kind"] != "wheel":  # which is held
+        still = "sheet" in body.shape
+        if len(frames) > 2 and not still and body.shape["kind"] != "wheel":  # which is held
             panel.line(body.position, color="0.25", linewidth=0.9, linestyle=PATHS[number % len(PATHS)], zorder=3,
                        label=called and f"path of {called}")
-        for frame, colour in zip(frames, colours, strict=True):
-            panel.body(body, frame, colour)
+        for frame, colour in list(zip(frames, colours, strict=True))[-1 if still else 0 :]:
+            panel.body(body, frame, float(clip.time[frame]), colour)  # sheets of all times would hide the picture
     for name, segment in _named_once(clip.segments):
         label = name if named else None
         if segment.kind == "load":  # arrows of all times would hide the picture

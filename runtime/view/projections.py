@@ -25,6 +25,10 @@ class Projection(NamedTuple):
         projected: np.ndarray = points @ np.stack([self.across, self.up], axis=1)
         return projected
 
+    def foreshortened(self, direction: np.ndarray) -> float:
+        """Return the length of a unit vector (3,) in the plane: 1 of one in it, 0 of one along the view."""
+        return float(np.linalg.norm(self.of(np.asarray(direction))))
+
 
 class Directions(NamedTuple):
     """Right-handed directions: across the main view, into it, and up; flat: whether the scene lies in this view."""

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..base.linear_waves import elevation
 from ..base.rotations import rotate
 from .animation import BodyShape
 
@@ -103,6 +104,12 @@ def joined(meshes: Sequence[Surface]) -> Surface:
             np.concatenate([triangles + k for (_, triangles), k in zip(meshes, first, strict=False)]))
 
 
+def _level(shape: Mapping[str, Any]) -> Surface:
+    """Return the level surface of a fluid."""
+    u, v = (np.linspace(-shape["size"], shape["size"], cells + 1)[:, None] for cells in shape["cells"])
+    return grid_mesh(u[:, None] * shape["along"] + v * shape["across"])
+
+
 def surface(shape: Mapping[str, Any]) -> Surface:
     """Return the surface of the shape of a `BodyShape`, in body axes. Raises ValueError for an unknown kind."""
     match shape["kind"]:
@@ -122,8 +129,10 @@ def surface(shape: Mapping[str, Any]) -> Surface:
             vertices, triangles = wheel(shape["radius"], shape["width"])
         case "mesh":
             vertices, triangles = np.asarray(shape["vertices"], dtype=float), np.asarray(shape["triangles"])
+        case "water":
+            vertices, triangles = _level(shape)
         case unknown:
-            raise ValueError(f'a body has no shape "{unknown}": box, sphere, cylinder, wheel and mesh are known')
+            raise ValueError(f'a body has no shape "{unknown}": box, sphere, cylinder, wheel, mesh and water are known')
     return vertices + np.asarray(shape.get("offset", (0, 0, 0)), dtype=float), triangles
 
 
@@ -132,10 +141,28 @@ def body_reach(body: BodyShape) -> float:
     return float(np.linalg.norm(surface(body.shape)[0], axis=1).max())
 
 
-def placed_surface(body: BodyShape, frame: int) -> Surface:
-    """Return the surface of a body at a frame: vertices (V, 3) in m along the ground's axes, and triangles."""
+def placed_surface(body: BodyShape, frame: int, time: float) -> Surface:
+    """Return the surface of a body at a frame and its time: vertices (V, 3) in m, the ground's axes, and triangles."""
     vertices, triangles = surface(body.shape)
+    if body.shape["kind"] == "water":
+        vertices = with_waves(body.shape, vertices, time)
     return body.position[frame] + rotate(body.orientation[frame], vertices), triangles
+
+
+def with_waves(shape: Mapping[str, Any], points: np.ndarray, time: float) -> np.ndarray:
+    """Return points (n, 3) of the level surface of a fluid, in m from its origin, at their elevations at a time."""
+    return np.asarray(points + np.multiply.outer(elevation(shape["waves"], np.asarray(time), points), shape["up"]))
+
+
+def wave_lines(body: BodyShape, frame: int, time: float, count: int) -> list[np.ndarray]:
+    """Return lines (n, 3) on the surface of a fluid at a frame and its time, so many along each side, in m."""
+    shape: Mapping[str, Any] = body.shape
+    size, sides, found = shape["size"], (shape["along"], shape["across"]), []
+    for side, other, cells in zip(sides, sides[::-1], shape["cells"], strict=True):
+        for at in np.linspace(-size, size, count) if count > 1 else (0.0,):
+            line = np.multiply.outer(np.linspace(-size, size, cells + 1), side) + at * np.asarray(other)
+            found.append(body.position[frame] + with_waves(shape, line, time))
+    return found
 
 
 def spoke(body: BodyShape, frame: int) -> np.ndarray:

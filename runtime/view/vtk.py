@@ -41,7 +41,7 @@ def write_vtk(animation: Animation, folder: str | os.PathLike[str]) -> Path:
 def frame_arrays(clip: Clip, frame: int) -> tuple[np.ndarray, list[tuple[str, np.ndarray]], dict[str, np.ndarray]]:
     """Return the points (N, 3), cells by kind, and data of points of one frame."""
     meshes = [(cable.position[frame], np.arange(len(cable.s) - 1)[:, None] + [0, 1]) for cable in clip.cables]
-    meshes += [placed_surface(body, frame) for body in clip.bodies]
+    meshes += [placed_surface(body, frame, float(clip.time[frame])) for body in clip.bodies]
     if not meshes:
         raise FunicularError("there are no cables and no bodies to write for ParaView")
     sizes = [len(points) for points, _ in meshes]

@@ -16,7 +16,7 @@ from browser import PATIENCE, Opened, browser
 from funicular.view.animation import Clip, EventMark, Mark
 from funicular.view.page import write_page
 from matplotlib.image import imread, imsave
-from viewed_scenes import hoist, riser
+from viewed_scenes import hoist, riser, sea
 
 pytestmark = pytest.mark.browser
 
@@ -48,7 +48,8 @@ def files(tmp_path_factory):
         "still": replace(beam, clips=(still,)),
         "point": replace(beam, clips=(Clip("point", np.zeros(1), marks=(Mark("P", "point", np.ones((1, 3))),)),)),
         "loads": replace(beam, time_label="load factor", time_unit=""),
-        "hoist": hoisted, "riser": riser_run().animation(), "catenary": fu.load_scene("catenary").animation(),
+        "hoist": hoisted, "riser": riser_run().animation(),
+        "sea": sea_run().animation(), "catenary": fu.load_scene("catenary").animation(),
         "events": replace(beam, clips=(replace(beam.clips[0], events=tuple(
             EventMark(0.1 * k, f"event {k}") for k in range(1, 15))),)),
     }
@@ -60,6 +61,11 @@ def files(tmp_path_factory):
 @cache
 def riser_run() -> fu.Run:
     return riser().run(1.0, output_step=0.1, tol=1e-2, progress=False)
+
+
+@cache
+def sea_run() -> fu.Run:
+    return sea().run(1.2, output_step=0.3, tol=1e-2, progress=False)
 
 
 @pytest.fixture
@@ -79,7 +85,7 @@ def opened(chromium, files):
         assert len([url for url in page.asked if url.startswith("file:")]) == 1
 
 
-@pytest.mark.parametrize("name", ["paper51", "twisted", "modes", "two", "still", "loads", "events", "hoist"])
+@pytest.mark.parametrize("name", ["paper51", "twisted", "modes", "two", "still", "loads", "events", "hoist", "sea"])
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_pages_open_without_complaints(opened, name, scheme):
     page = opened(name, color_scheme=scheme)
@@ -354,6 +360,23 @@ def test_the_bed_is_seen_and_picked_through_the_water(opened):
     assert 0.03 < blue - red < 0.2
     assert page("f.pick(...f.pixel([10, 0, 8]))")["name"] == "bed"
     assert page("f.body('sea').position")[1] == pytest.approx(0, abs=2e-4)
+
+
+@pytest.mark.parametrize("time", [0.0, 0.6, 1.05])
+def test_waves_stand_where_the_fluid_has_them(opened, time):
+    """At the shown time, also between frames: their edge, seen from the side, is at the elevation along the edge."""
+    page, fluid = opened("sea", color_scheme="light"), sea_run().scene.fluids["sea"]
+    page("f.set({reference: false, marks: false, trails: false, grid: false})")
+    page("f.look('z')")
+    page("f.goTo(a)", time)
+    shape = next(body for body in sea_run().animation().clips[0].bodies if body.name == "sea")
+    x, y, z = shape.position[0]
+    edge = [(x + 0.7 * u * shape.shape["size"], y, z + shape.shape["size"]) for u in np.linspace(-1, 1, 7)]
+    crests = [(*at[:1], 0.5 + float(fluid.elevation(time, np.array(at))), at[2]) for at in edge]
+    for red, _, blue in colours_at(page, crests):
+        assert blue - red > 0.3
+    for red, _, blue in colours_at(page, [(a, b + 1.2, c) for a, b, c in crests]):
+        assert blue - red < 0.3, "above the waves"
 
 
 def test_arrows_of_a_moving_load_move(opened):

@@ -29,7 +29,7 @@ class Frames:
 
     time (T,) in s, or another parameter; value: results (T, ...) by their names in a run; has: whether there is a
     result of a name; reference: results at one instant, without the time, the origin of displacements; load (T,): the
-    applied part of the loads; moves: whether loads follow their signals over time; happened: the first times of
+    applied part of the loads; moves: whether loads and waves follow time; happened: the first times of
     events, s.
     """
 

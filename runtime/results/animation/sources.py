@@ -70,9 +70,10 @@ def _law(scene: SceneData, time: np.ndarray, value: Callable[[str], np.ndarray],
 
 
 def of_scene(scene: SceneData) -> Frames:
-    """Return the one frame of a scene as it is drawn, with its loads at the start."""
+    """Return the one frame of a scene as it is drawn, with its loads and waves at the start."""
     found = {name: value[None] for name, value in drawn(scene).items()}
-    return _frames(scene, np.zeros(1), found, np.ones(1), _law(scene, np.zeros(1), found.__getitem__))
+    frames = _frames(scene, np.zeros(1), found, np.ones(1), _law(scene, np.zeros(1), found.__getitem__))
+    return replace(frames, moves=True)
 
 
 def of_run(run: Recorded, numbers: np.ndarray) -> Frames:

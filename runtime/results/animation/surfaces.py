@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...base.linear_waves import moved_to
+from ...parts.fluid import Fluid
 from ...parts.solids import Box, Sphere
 from ...parts.surface import Surface
 from ...parts.surface_shapes import Geometry
@@ -17,6 +19,8 @@ from .hollows import hollow_mesh
 
 GRID_CELLS = 12
 """Cells of a plane to each side of its middle."""
+CELLS_A_WAVE, MAX_CELLS = 10, 160
+"""Of the surface of a fluid: cells for the shortest wave, and the largest number along a side."""
 MAX_DISTANCE = 2.0
 """Distance from the centre, in sizes of the scene, within which the surface of a fluid is drawn."""
 
@@ -42,13 +46,30 @@ def _at_rest(name: str, origin: np.ndarray, times: int, shape: dict[str, object]
 
 
 def level_shapes(frames: Frames, centre: np.ndarray, size: float) -> list[BodyShape]:
-    """Return the surfaces of fluids near the scene as planes at rest; centre (3,), size: of the scene, m."""
+    """Return the surfaces of fluids near the scene, level or with their waves; centre (3,), size: of the scene, m."""
     up, found = frames.scene.up, []
     for name, fluid in frames.scene.fluids.items():
         if fluid.surface is not None and abs(above := fluid.surface - up @ centre) <= MAX_DISTANCE * size:
-            plane = mesh_shape(*_plane(up, size), np.zeros(3)) | {"sheet": "water"}
-            found.append(_at_rest(name, centre + above * up, len(frames.time), plane))
+            origin = centre + above * up
+            found.append(_at_rest(name, origin, len(frames.time), _water(frames, fluid, origin, size)))
     return found
+
+
+def _water(frames: Frames, fluid: Fluid, origin: np.ndarray, size: float) -> dict[str, object]:
+    """Return the shape of the surface of a fluid about an origin (3,): level, or with waves where time passes."""
+    up = frames.scene.up
+    gravity = float(np.linalg.norm(frames.scene.gravity))
+    waves = moved_to(fluid.components(gravity), origin) if frames.moves and gravity else np.zeros((0, 6))
+    sides = square_to(up)
+    cells = [_cells(float(np.abs(waves[:, 3:] @ side).max(initial=0)), size) for side in sides]
+    along, across = (side.tolist() for side in sides)
+    return {"kind": "water", "sheet": "water", "size": float(size), "along": along, "across": across, "cells": cells,
+            "up": up.tolist(), "waves": waves}
+
+
+def _cells(wave_number: float, size: float) -> int:
+    """Return the number of cells along a side that show waves of up to a number, 1/m, along it."""
+    return int(np.clip(np.ceil(CELLS_A_WAVE * wave_number * size / np.pi), 2 * GRID_CELLS, MAX_CELLS))
 
 
 def _drawn(surface: Surface, shape: Geometry, size: float, offset: np.ndarray) -> dict[str, object]:

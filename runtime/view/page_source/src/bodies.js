@@ -22,8 +22,6 @@ import { SHADE } from "./shading.js";
 
 const MIN_PIXELS = 9; // smallest size of a body on the screen
 
-const WATER_OPACITY = 0.3;
-
 const VERTEX = `
   varying vec3 vNormal;
   void main() {
@@ -33,10 +31,9 @@ const VERTEX = `
 `;
 const FRAGMENT = `
   uniform vec3 colour;
-  uniform float opacity;
   varying vec3 vNormal;
   ${SHADE}
-  void main() { gl_FragColor = vec4(shaded(colour, vNormal), opacity); }
+  void main() { gl_FragColor = vec4(shaded(colour, vNormal), 1.0); }
 `;
 
 export class BodyView {
@@ -50,18 +47,11 @@ export class BodyView {
     this.radius = geometry.boundingSphere.radius;
     this.offset = new Vector3(...(body.shape.offset ?? [0, 0, 0])).add(geometry.boundingSphere.center);
     this.sheet = body.shape.sheet ?? null; // its edges are seen from the side, too
-    this.isWater = this.sheet === "water";
     this.material = new ShaderMaterial({
       vertexShader: VERTEX,
       fragmentShader: FRAGMENT,
       side: DoubleSide,
-      transparent: this.isWater,
-      depthWrite: !this.isWater,
-      uniforms: {
-        colour: { value: new Color() },
-        opacity: { value: this.isWater ? WATER_OPACITY : 1 },
-        rim: { value: 0 },
-      },
+      uniforms: { colour: { value: new Color() }, rim: { value: 0 } },
     });
     this.edgeMaterial = new LineBasicMaterial();
     const mesh = new Mesh(geometry, this.material);

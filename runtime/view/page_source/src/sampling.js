@@ -28,6 +28,11 @@ export function isOutside(times, time, period = null) {
   return !period && times.length > 1 && (time < times[0] - margin || time > times.at(-1) + margin);
 }
 
+/** Return the time of a sample: that of its frames, between the first and the last. */
+export function timeOf(times, { i, j, w }) {
+  return w === 0 ? times[i] : times[i] + w * (times[j] - times[i]);
+}
+
 /** Return the value at offset `k` of a frame of an array; an array of one frame is constant. */
 export function valueAt(array, sample, k) {
   const stride = array.values.length / array.shape[0];

@@ -6,8 +6,9 @@ import { CableView } from "./cables.js";
 import { Cameras } from "./cameras.js";
 import { GridView } from "./grid.js";
 import { line, SegmentView, TrailView } from "./lines.js";
-import { sampleAt } from "./sampling.js";
+import { sampleAt, timeOf } from "./sampling.js";
 import { MarkView } from "./symbols.js";
+import { WaterView } from "./water.js";
 
 ColorManagement.enabled = false; // no conversion of colours
 
@@ -76,9 +77,10 @@ export class Stage {
         add("cable", view, view.mesh);
       }
       for (const body of bodies) {
-        const view = new BodyView(body);
+        const isWater = body.shape.kind === "water";
+        const view = isWater ? new WaterView(body) : new BodyView(body);
         add("body", view, view.group);
-        if (time.length > 1 && !period) {
+        if (time.length > 1 && !period && !isWater) {
           const trail = new TrailView(body, time.length);
           add("trail", trail, trail.line);
         }
@@ -101,7 +103,8 @@ export class Stage {
 
   sample(clip) {
     const { time, period } = this.data.clips[clip];
-    return sampleAt(time, this.time, period);
+    const sample = sampleAt(time, this.time, period);
+    return { ...sample, time: timeOf(time, sample) };
   }
 
   /** Move everything to a time. */
