@@ -116,6 +116,8 @@ SOURCES = (
     "tangent_point.c",
     "taut_part.c",
     "planar_taut_rope.c",
+    "working_curve.c",
+    "planar_working_curve.c",
     "registry.c",
 )
 """C files of the kernels; each can be compiled without the others but for registry.c, which has tables of all."""

@@ -2257,6 +2257,33 @@ typedef void fu_taut_rope_slide_tangent_kernel(const fu_real *weights, const fu_
 /* weights 2, lengths 2, past 2, K 2, by_ratio 1 */
 fu_taut_rope_slide_tangent_kernel planar_taut_rope_slide_tangent;
 
+typedef void fu_working_curve_measure_kernel(const fu_real *a, fu_real *e);
+/* strain of a point: a [1] -> e [1] */
+/* a 3, e 1 */
+fu_working_curve_measure_kernel working_curve_measure;
+/* a 2, e 1 */
+fu_working_curve_measure_kernel planar_working_curve_measure;
+
+typedef void fu_working_curve_change_kernel(fu_real e, fu_real highest, fu_real permanent, const fu_real *first, const fu_real *shape, fu_real *n, fu_real *D, fu_real *U);
+/* force along a working curve less that of first loading: e [1]; highest [1]; permanent [1]; first [1, then 1, N, N,
+ * N, N, N a segment]; shape [1] -> n [N]; D [N]; U [N] */
+/* first 145, shape 145, n 1, D 1, U 1 */
+fu_working_curve_change_kernel working_curve_change, planar_working_curve_change;
+
+typedef void fu_working_curve_force_kernel(const fu_real *a, fu_real n, fu_real *g);
+/* force of an axial force on the slope: a [1]; n [N] -> g [N] */
+/* a 3, g 3 */
+fu_working_curve_force_kernel working_curve_force;
+/* a 2, g 2 */
+fu_working_curve_force_kernel planar_working_curve_force;
+
+typedef void fu_working_curve_tangent_kernel(const fu_real *a, fu_real n, fu_real D, fu_real *K);
+/* derivatives of the force by the slope: a [1]; n [N]; D [N] -> K [N] */
+/* a 3, K 3x3 */
+fu_working_curve_tangent_kernel working_curve_tangent;
+/* a 2, K 2x2 */
+fu_working_curve_tangent_kernel planar_working_curve_tangent;
+
 /* constants of the law from the stiffness of the section: l [m]; S [N, N m^2, N m^2, N m^4, N m^4, N m^4] -> A [N m] */
 /* S 9x6, A 61 */
 void beam24_continuum_stiffness(fu_real l, const fu_real *S, fu_real *A);
@@ -2760,6 +2787,16 @@ typedef struct {
     fu_taut_rope_slide_tangent_kernel *slide_tangent;
 } fu_taut_rope_kernels;
 
+/* What the engine needs of a working_curve. */
+typedef struct {
+    const char *name;
+    int dim;
+    fu_working_curve_measure_kernel *measure;
+    fu_working_curve_change_kernel *change;
+    fu_working_curve_force_kernel *force;
+    fu_working_curve_tangent_kernel *tangent;
+} fu_working_curve_kernels;
+
 /* Every table, one entry a family. */
 typedef struct {
     int n_elements;
@@ -2800,6 +2837,8 @@ typedef struct {
     const fu_taut_part_kernels *taut_parts;
     int n_taut_ropes;
     const fu_taut_rope_kernels *taut_ropes;
+    int n_working_curves;
+    const fu_working_curve_kernels *working_curves;
 } fu_tables;
 extern const fu_tables fu_all;
 
@@ -2844,6 +2883,8 @@ static inline const void *fu_find(const fu_tables *tables, const char *role, con
         if (!strcmp(tables->taut_parts[i].name, name)) return &tables->taut_parts[i];
     for (int i = 0; i < tables->n_taut_ropes && !strcmp(role, "taut_rope"); ++i)
         if (!strcmp(tables->taut_ropes[i].name, name)) return &tables->taut_ropes[i];
+    for (int i = 0; i < tables->n_working_curves && !strcmp(role, "working_curve"); ++i)
+        if (!strcmp(tables->working_curves[i].name, name)) return &tables->working_curves[i];
     return 0;
 }
 

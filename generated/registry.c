@@ -372,6 +372,12 @@ static const fu_taut_rope_kernels taut_ropes[] = {
      planar_taut_rope_slide_tangent},
 };
 
+static const fu_working_curve_kernels working_curves[] = {
+    {"working_curve", 3, working_curve_measure, working_curve_change, working_curve_force, working_curve_tangent},
+    {"planar_working_curve", 2, planar_working_curve_measure, planar_working_curve_change, planar_working_curve_force,
+     planar_working_curve_tangent},
+};
+
 /* Arguments from arrays of pointers, to inputs `a` and outputs `out`: s a number, v an array, then how many outputs. */
 #define FU_ARGUMENTS_ssv_1 *a[0], *a[1], a[2], out[0]
 #define FU_ARGUMENTS_ssvv_1 *a[0], *a[1], a[2], a[3], out[0]
@@ -529,6 +535,9 @@ static const fu_taut_rope_kernels taut_ropes[] = {
 #define FU_ARGUMENTS_sssss_3 *a[0], *a[1], *a[2], *a[3], *a[4], out[0], out[1], out[2]
 #define FU_ARGUMENTS_vvss_2 a[0], a[1], *a[2], *a[3], out[0], out[1]
 #define FU_ARGUMENTS_vvvss_2 a[0], a[1], a[2], *a[3], *a[4], out[0], out[1]
+#define FU_ARGUMENTS_sssvv_3 *a[0], *a[1], *a[2], a[3], a[4], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vs_1 a[0], *a[1], out[0]
+#define FU_ARGUMENTS_vss_1 a[0], *a[1], *a[2], out[0]
 
 /* X(name, form of its arguments) for every kernel */
 #define FU_EVERY(X) \
@@ -1281,6 +1290,14 @@ static const fu_taut_rope_kernels taut_ropes[] = {
     X(planar_taut_rope_energy, sssss_3) \
     X(planar_taut_rope_slide, vvss_2) \
     X(planar_taut_rope_slide_tangent, vvvss_2) \
+    X(working_curve_measure, v_1) \
+    X(working_curve_change, sssvv_3) \
+    X(working_curve_force, vs_1) \
+    X(working_curve_tangent, vss_1) \
+    X(planar_working_curve_measure, v_1) \
+    X(planar_working_curve_change, sssvv_3) \
+    X(planar_working_curve_force, vs_1) \
+    X(planar_working_curve_tangent, vss_1) \
 
 #define FU_CALL(name, form) \
     static void call_##name(const fu_real *const *a, fu_real *const *out) { name(FU_ARGUMENTS_##form); }
@@ -1311,5 +1328,6 @@ const fu_tables fu_all = {
     2, surfaces,
     1, tangent_points,
     1, taut_parts,
-    1, taut_ropes
+    1, taut_ropes,
+    2, working_curves
 };

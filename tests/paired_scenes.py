@@ -446,7 +446,8 @@ def laws() -> dict[str, list[str]]:
 
 MEMORY: dict[str, Callable[[Site], object]] = {
     "none": lambda on: None, "relaxation": lambda on: on.scene.relaxation("wire", stiffness=1e3, time=TIME),
-    "wire_friction": lambda on: on.scene.wire_friction("wire", stiffness=0.2, moment=0.01)}
+    "wire_friction": lambda on: on.scene.wire_friction("wire", stiffness=0.2, moment=0.01),
+    "working_curve": lambda on: on.scene.working_curve("wire", permanent=0.3)}
 
 FACTORS: dict[str, list[str]] = {
     "element": ["cable12", *sorted(built_in().keys() - {"cable12"})],

@@ -75,7 +75,7 @@ TYPES = {
     "Name": "str", "Count": "int", "Flag": "bool", "Exponent": "float",
     "Material": "Material", "AnyFriction": "Friction | float",
     "float": "float", "str": "str", "Callable": "Callable[..., Any]",
-    "Any": "Callable[..., Any]",
+    "Any": "Callable[..., Any]", "tuple": "Numbers",
 }
 """What may be given for fields that are annotated so; ``inertia``, ``points`` and ``nodes`` are fields of their own."""
 

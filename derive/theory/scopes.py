@@ -367,6 +367,13 @@ def branch_scope(name: str) -> Scope:
     return Scope(families()[name], tuple(Symbol(rf"\mathbf{{{letter}}}", letter, column) for letter in "abn"))
 
 
+def working_curve_scope(name: str) -> Scope:
+    """Return the scope of working curves of a rope."""
+    return Scope(families()[name], (Symbol(r"\mathbf{a}", "a", column), Symbol("e", "e", number),
+                                    Symbol("H", "highest", number), Symbol("p", "permanent", number),
+                                    Symbol("n", "n", number)))
+
+
 def drag_scope(name: str) -> Scope:
     """Return the scope of drag."""
     return Scope(families()[name], (Symbol(r"\mathbf{t}", "t", column), Symbol(r"\mathbf{w}", "w", column),

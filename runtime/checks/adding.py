@@ -29,6 +29,7 @@ from ..parts.slide import Slide
 from ..parts.support import Support, Tie
 from ..parts.surface import Surface
 from ..parts.validation import show
+from ..parts.working_curve import WorkingCurve
 from . import rope_loads
 from .branch_placement import placed_branch
 from .contact_placement import placed_contact, placed_contacts, placed_surface
@@ -40,6 +41,7 @@ from .placement import placed_between, placed_event, placed_mass, placed_point_f
 from .rope_placement import check_beside_ropes, placed_rope
 from .slide_placement import placed_slide
 from .whole_scene import check_plane
+from .working_curve_placement import placed_working_curve
 
 
 def placed_cable(scene: SceneData, cable: Cable) -> Cable:
@@ -88,6 +90,7 @@ _CHECKS: dict[type[Part], Callable[[SceneData, Any], Part]] = {
     Cable: placed_cable, Support: placed_support, Tie: placed_tie, Rope: placed_rope, Joint: placed_joint,
     Slide: placed_slide, Load: rope_loads.placed, PointForce: placed_point_force, PointMass: placed_mass,
     Event: placed_event, Fluid: placed_fluid, Drag: placed_drag, Branch: placed_branch, Ice: placed_ice,
+    WorkingCurve: placed_working_curve,
     Crossing: placed_crossing, Surface: placed_surface, Contact: placed_contact}
 
 

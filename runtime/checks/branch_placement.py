@@ -27,7 +27,8 @@ def placed_branch(scene: SceneData, part: Branch) -> Branch:
             f"acts on {' and '.join(ELEMENTS)}, but {cable.where} is of {cable.element}",
             "take one of these elements",
         )
-    if cable.gives_way:
+    stretches = any(curve.cable == part.cable for curve in scene.working_curves.values()) and not part.bends
+    if cable.gives_way and not stretches:
         raise SceneError(
             part.where,
             f"{cable.where} resists tension alone, and a branch would push",

@@ -27,6 +27,7 @@ BODY = ("position", "orientation", "velocity", "angular_velocity")
 MODAL = (*BODY, "modal_coordinates", "modal_velocities")
 SLIDE = ("s",)
 ROPE = ("coordinates", "coordinate_rates")
+WORKING_CURVE = ("highest_strain",)
 TIE_TOLERANCE = 1e-7
 """Error of ties in a state of `radau`, whose iteration stops there, as a fraction of the largest change."""
 
@@ -37,8 +38,9 @@ class InitialState(Mapping[str, np.ndarray]):
     ``state["wire.nodal_vectors"]`` (node, vector, 3), ``state["wire.nodal_velocity"]``, or of cables without directors
     ``state["wire.position"]`` and ``state["wire.velocity"]`` (node, 3): slopes are then those of the cubic spline
     through the nodes over the undeformed arc-length. Of bodies position, orientation, velocity, angular_velocity,
-    modal_coordinates, modal_velocities; of slides s; of ropes coordinates and coordinate_rates. Units are those of the
-    results. Other quantities are as drawn; rates of ropes that are not given follow from those of bodies.
+    modal_coordinates, modal_velocities; of slides s; of ropes coordinates and coordinate_rates; of working curves
+    highest_strain. Units are those of the results. Other quantities are as drawn; rates of ropes that are not given
+    follow from those of bodies.
     """
 
     def __init__(self, arrays: Mapping[str, Any], time: float | None = None, unstretched: Sequence[str] = (),
@@ -127,6 +129,13 @@ class InitialState(Mapping[str, np.ndarray]):
         for slide in model.slides:
             if (s := self.get(f"{slide.name}.s")) is not None:
                 slide.place_at(float(_of_shape(s, (), f"{slide.name}.s")), model)
+        for name in scene.working_curves:
+            if (highest := self.get(f"{name}.{WORKING_CURVE[0]}")) is not None:
+                curves = [curve for curve in model.working_curves if curve.name == name]
+                points = sum(curve.highest.size for curve in curves)
+                of_each = np.split(_of_shape(highest, (points,), f"{name}.{WORKING_CURVE[0]}"), len(curves))
+                for curve, values in zip(curves, of_each, strict=True):
+                    curve.highest = values
 
     def _place_cable(self, model: Model, cable: CableModel, drawn: Cable) -> None:
         for whole, points, into in zip(CABLE, POINTS, (model.q, model.v), strict=True):
@@ -179,6 +188,7 @@ def names_of(scene: SceneData) -> Iterator[str]:
         yield from (f"{name}.{quantity}" for quantity in (MODAL if isinstance(body, ModalBody) else BODY))
     yield from (f"{slide}.{quantity}" for slide in scene.slides for quantity in SLIDE)
     yield from (f"{rope}.{quantity}" for rope in scene.ropes for quantity in ROPE)
+    yield from (f"{curve}.{quantity}" for curve in scene.working_curves for quantity in WORKING_CURVE)
 
 
 def _frame(body: BodyModel, drawn: RigidBody | ModalBody, given: dict[str, np.ndarray],

@@ -37,6 +37,7 @@ from .ropes import SpanModel
 from .signals import Signals
 from .span_coordinates import AlongSpan, SpanCoordinates
 from .unknowns import Node
+from .working_curves import WorkingCurveModel
 
 
 def orders_of(vectors: Sequence[str]) -> np.ndarray:
@@ -353,6 +354,7 @@ class Model:
     drags = _couplings_of(DragModel)
     ices = _couplings_of(IceModel)
     branches = _couplings_of(BranchModel)
+    working_curves = _couplings_of(WorkingCurveModel)
     crossings = _couplings_of(CrossingModel)
     spans = _couplings_of(SpanModel)
     sheaves = _couplings_of(SheaveModel)

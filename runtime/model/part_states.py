@@ -262,6 +262,16 @@ def _branches(model: Model, at: States, kind: str, asked: Asked) -> Values:
     return found
 
 
+def _working_curves(model: Model, at: States, kind: str, asked: Asked) -> Values:
+    """Return the results of working curves by name, at the points of their elements."""
+    found: Values = {}
+    for name in dict.fromkeys(curve.name for curve in model.working_curves if asked(curve.name)):
+        elements = [k for k, curve in enumerate(model.working_curves) if curve.name == name]
+        of = outputs_by_name(kind, at.numbers[kind][:, elements])
+        found[name] = {key: points.reshape(len(at.q), points.shape[1] * points.shape[2]) for key, points in of.items()}
+    return found
+
+
 def _ropes(model: Model, at: States, kind: str, asked: Asked) -> Values:
     """Return points along ropes, and the forces at their ends."""
     anchors = model.of(AnchorModel)
@@ -284,7 +294,8 @@ def _none(model: Model, at: States, kind: str, asked: Asked) -> Values:
 
 
 RESULTS = {"slide": _slides, "anchor": _ropes, "joint": _joints, "joint_friction": _none,
-           "point_force": _point_forces, "drag": _drags, "ice": _ices, "branch": _branches, "contact": _contacts,
+           "point_force": _point_forces, "drag": _drags, "ice": _ices, "branch": _branches,
+           "working_curve": _working_curves, "contact": _contacts,
            "rope contact": _rope_contacts, "hard_contact": _hard_contacts,
            "taut_point": _taut_points, "taut_rope": _none}
 """Functions from outputs to results, of the kinds of couplings whose results are not the outputs themselves."""

@@ -24,6 +24,7 @@ from .drag import Drag as Drag
 from .ice import Ice as Ice
 from .branch import Relaxation as Relaxation
 from .branch import WireFriction as WireFriction
+from .working_curve import WorkingCurve as WorkingCurve
 from .crossing import Crossing as Crossing
 from .surface import Surface as Surface
 from .contact import Contact as Contact

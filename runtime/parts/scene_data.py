@@ -37,6 +37,7 @@ from .support import Clamp, Motion, Pin, Support, Tie
 from .surface import Surface
 from .thermal import as_temperature
 from .validation import vector
+from .working_curve import WorkingCurve
 
 if TYPE_CHECKING:
     from .rope_route import DrawnRoute
@@ -122,6 +123,7 @@ class SceneData:
     drags: dict[str, Drag]
     ices: dict[str, Ice]
     branches: dict[str, Relaxation | WireFriction]
+    working_curves: dict[str, WorkingCurve]
     crossings: dict[str, Crossing]
     surfaces: dict[str, Surface]
     contacts: dict[str, Contact]

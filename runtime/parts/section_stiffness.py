@@ -13,9 +13,10 @@ import numpy as np
 
 from ..base.deferred import dataclass
 from ..kernels.elements import built_in_laws
+from .cubic_segments import RESIDUAL_STIFFNESS, TRANSITION_STRAIN
 from .material import Material
 from .section import Section
-from .tension_table import RESIDUAL_STIFFNESS, TRANSITION_STRAIN, TensionTable
+from .tension_table import TensionTable
 
 
 def section_stiffness(law: str, section: Section, material: Material, dim: int = 3) -> np.ndarray:

@@ -8,14 +8,12 @@ from typing import Annotated
 import numpy as np
 from pydantic import model_validator
 
-from ..kernels.elements import part_of_manifest
+from .cubic_segments import TRANSITION_STRAIN, giving_way, numbers, value
 from .part import Part
 from .validation import check_function, list_of, show
 
 MAX_POINTS = 20
-RESIDUAL_STIFFNESS, TRANSITION_STRAIN = 1e-4, 1e-6
-"""In compression of a cable that gives way there: part of the stiffness that remains, and the strain of the transition.
-"""
+STRAIN_ROUNDING = 4e-16
 
 
 class TensionTable(Part):
@@ -76,24 +74,18 @@ class TensionTable(Part):
 
         x, N = np.array(self.strain), np.array(self.force)
         slopes = PchipInterpolator(x, N).derivative()(x)
-        if not self.only_pulls:
-            return x, N, slopes
-        left = RESIDUAL_STIFFNESS * N[1] / x[1]
-        below = -TRANSITION_STRAIN * (left + slopes[0]) / 2
-        return np.array([-TRANSITION_STRAIN, *x]), np.array([below, *N]), np.array([left, *slopes])
+        return giving_way(x, N, slopes) if self.only_pulls else (x, N, slopes)
+
+    def strain_at(self, force: float) -> float:
+        """Return the strain at a force in N, 0 or above."""
+        first, low, high = self.numbers(), 0.0, self.strain[-1]
+        while float(value(first, np.array(high))) < force:
+            low, high = high, 2 * high
+        while high - low > STRAIN_ROUNDING * high:
+            middle = (low + high) / 2
+            low, high = (low, middle) if float(value(first, np.array(middle))) >= force else (middle, high)
+        return high if force > 0 else 0.0
 
     def numbers(self) -> np.ndarray:
-        """Return the numbers of its segments, as kernels take them (derive/codegen/piecewise.py)."""
-        from scipy.interpolate import CubicHermiteSpline  # slow to import
-
-        x, N, slopes = self._points()
-        law = CubicHermiteSpline(x, N, slopes)
-        energy = law.antiderivative()
-        segments = np.zeros((len(x) + 1, 6))  # straight before the first point and beyond the last one
-        segments[1:, 0], segments[1:, 1] = x, energy(x) - energy(0.0)
-        segments[1:, 2], segments[1:, 3] = N, slopes
-        segments[0] = segments[1]
-        segments[1:-1, 4:] = law.c[1::-1].T
-        found = np.zeros(1 + segments.shape[1] * part_of_manifest("max_segments"))
-        found[0], found[1 : 1 + segments.size] = len(segments), segments.ravel()
-        return found
+        """Return the numbers of its segments, as kernels take them."""
+        return numbers(*self._points())

@@ -1,10 +1,12 @@
-"""Ropes with memory: viscosity and friction between wires beside closed forms, with every integrator that has them.
+"""Ropes with memory: viscosity, friction between wires and working curves beside closed forms, with every integrator
+that has them.
 
     python tests/benchmarks/rope_memory.py [--out FILE.csv]
 
 A rope of 10 m without weight, a standard linear solid: stiffness EA for long times, EA + K for short ones. Its end is
 pulled by a force (creep), moved and held (relaxation), and moved harmonically (loss in a cycle). A rope whose end is
-turned to and fro, with friction between its wires: bilinear loops of the moment by the curvature.
+turned to and fro, with friction between its wires: bilinear loops of the moment by the curvature. A rope of fibres
+that is stretched, let go, stretched further and let go again: its working curves.
 """
 
 from __future__ import annotations
@@ -12,7 +14,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from funicular import Circle, Harmonic, Material, Ramp, Run, Scene
+from funicular import Circle, Harmonic, Material, Ramp, Run, Scene, TensionTable
+from funicular.parts.signal import CombinedSignal
 from table import arguments, few, show
 
 L, RADIUS = 10.0, 0.005
@@ -29,6 +32,12 @@ curvature on; and cycles."""
 LENGTH, PERIOD, WIRES = 2.0, 2.0, 0.5
 """m, s, and N m²: of the rope that is bent; of loose wires."""
 INTEGRATORS = "genalpha", "radau", "explicit", "linear"
+FIBRES = TensionTable(strain=[0, 0.05, 0.1], force=[0, 0.05 * EA, 0.1 * EA])
+"""Straight, so that all areas are closed forms."""
+PERMANENT, BEND = 0.4, 0.5
+STOPS = (0.2, 0.4), (0.4, 0.2), (0.6, 0.6), (0.8, 0.45), (1.0, 0.6)
+"""s, and m: times and displacements between which the end of the rope of fibres moves, without becoming slack."""
+CURVES = {"linear": {}, "quadratic": {"bend": BEND}, "exponential": {"bend": BEND}}
 
 
 def rope(element: str = "cable8p", density: float = ROPE.density) -> Scene:
@@ -164,6 +173,68 @@ def of_friction(integrator: str, tol: float = 1e-5, **how: float) -> list[dict]:
             row("bending", integrator, "loss in a cycle, J", lost, whole, whole, run)]
 
 
+def fibres(curve: str = "linear", element: str = "cable8p", density: float = ROPE.density, elements: int = 2) -> Scene:
+    """Return a rope of fibres with working curves, pinned at its start."""
+    scene = Scene(gravity=(0, 0, 0))
+    scene.cable("rope", start=(0, 0, 0), end=(L, 0, 0), elements=elements, element=element, membrane="tabulated",
+                section=Circle(radius=RADIUS, tension_table=FIBRES), material=ROPE.remade({"density": density}))
+    scene.pin("rope", s=0.0)
+    scene.working_curve("rope", permanent=PERMANENT, curve=curve, **CURVES[curve], name="worked")
+    return scene
+
+
+def stretched(curve: str = "linear", element: str = "cable8p") -> Scene:
+    """Return a rope of fibres whose end goes from stop to stop."""
+    scene, before = fibres(curve, element), (0.0, 0.0)
+    ramps, changes = [], []
+    for stop in STOPS:
+        ramps.append(Ramp(start=before[0], end=stop[0]))
+        changes.append(stop[1] - before[1])
+        before = stop
+    scene.motion("rope", s=L, displacement=(CombinedSignal(signals=ramps, factors=changes), 0, 0))
+    return scene
+
+
+def shape(curve: str, x: np.ndarray) -> np.ndarray:
+    """Return the share of the force at the highest strain by the share x of the way to it."""
+    return {"linear": x, "quadratic": x * (1 - BEND + BEND * x),
+            "exponential": np.expm1(BEND * x) / np.expm1(BEND)}[curve]
+
+
+def mean_of_shape(curve: str) -> float:
+    """Return the mean of the shape."""
+    return {"linear": 0.5, "quadratic": 0.5 - BEND / 6, "exponential": 1 / BEND - 1 / np.expm1(BEND)}[curve]
+
+
+def working_tension(curve: str, strain: np.ndarray) -> np.ndarray:
+    """Return the tension (T, ...) of the rope of fibres, N, by strains of a history that has its extremes."""
+    highest = np.maximum.accumulate(strain, axis=0)
+    low = PERMANENT * highest
+    with np.errstate(invalid="ignore"):
+        x = np.where(highest > 0, (strain - low) / (highest - low), 0.0)
+    return EA * np.where(strain < highest, highest * shape(curve, np.maximum(x, 0.0)), strain)
+
+
+def working_loss(curve: str, highest: float) -> float:
+    """Return the energy that the rope of fibres has lost by a highest strain, J."""
+    return L * EA * highest**2 * (0.5 - (1 - PERMANENT) * mean_of_shape(curve))
+
+
+def of_working_curve(integrator: str, curve: str = "linear", tol: float = 1e-5, **how: float) -> list[dict]:
+    """Return the rows of the tension, and of the energies that both first loadings have cost."""
+    run = stretched(curve).run(STOPS[-1][0], output_step=0.01, integrator=integrator, tol=tol, **how)
+    times = np.concatenate([[0.0], [stop[0] for stop in STOPS]])
+    end = sum(Ramp(start=a, end=b).value(run.time) * change for a, b, change in zip(
+        times, times[1:], np.diff([0.0, *(stop[1] for stop in STOPS)]), strict=False))
+    tension, exact = run["worked.tension"], working_tension(curve, np.asarray(end) / L)
+    at = np.unravel_index(np.argmax(np.abs(tension - exact[:, None])), tension.shape)
+    case, found = f"working curve, {curve}", []
+    for time, highest in ((0.5, STOPS[0][1]), (STOPS[-1][0], STOPS[2][1])):
+        lost, whole = np.interp(time, run.time, run["energy.dissipated"]), working_loss(curve, highest / L)
+        found.append(row(case, integrator, f"loss up to {highest:g} m, J", lost, whole, whole, run))
+    return [row(case, integrator, "tension, N", tension[at], exact[at[0]], np.abs(exact).max(), run), *found]
+
+
 def row(case: str, integrator: str, quantity: str, found: float, exact: float, size: float, run: Run) -> dict:
     """Return a row with the error over the size of the quantity, and that of the energies over the work."""
     energies = run["energy.kinetic"] + run["energy.elastic"] + run["energy.dissipated"] - run["energy.external"]
@@ -184,6 +255,8 @@ def main() -> None:
     options = arguments(__doc__)
     cases = [lambda i, c=case: of_viscosity(c, i) for case in VISCOUS] + [of_loss]
     rows = [case(integrator) for case in few(cases) for integrator in few(INTEGRATORS)]
+    rows += [each for curve in few(CURVES) for integrator in few(INTEGRATORS[:3])
+             for each in of_working_curve(integrator, curve)]
     show([*rows, *of_friction("radau"), *of_friction("genalpha", step=1e-3)], options.out)
 
 

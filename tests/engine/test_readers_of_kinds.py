@@ -30,7 +30,10 @@ PLACES = {
     "an instant or a frequency of fluids: their signals, tables and added mass": [
         "model/drag_forces.py", "model/breakpoints.py", "results/section_forces/balance_limits.py",
         "solve/statics/string_start.py"],
-    "forces of branches within elements, which a balance does not know": ["results/section_forces/balance_limits.py"],
+    "forces of branches and working curves within elements, which a balance does not know": [
+        "results/section_forces/balance_limits.py"],
+    "highest strains of ropes in a state": ["model/initial_state.py"],
+    "energy that is lost in a relaxation": ["solve/statics/relaxation.py"],
     "contact with surfaces: depth, ends of the surface, what a cable lies on": [
         "solve/linear/condensation.py", "solve/modes/contact_edges.py", "solve/notes/penetrations.py",
         "solve/notes/surface_ends.py", "solve/notes/coarse_contact.py", "solve/statics/lying.py",
@@ -83,6 +86,9 @@ SCENE_PLACES = {
         "solve/adjustment/adjustment.py", "solve/adjustment/length_changes.py",
         "solve/adjustment/parameter_changes.py", "solve/adjustment/parameter_search.py",
         "solve/adjustment/parameters.py"],
+    "working curves: their forces in sections and highest strains, and what they exclude": [
+        "results/section_forces/balance_limits.py", "results/section_forces/forces.py",
+        "solve/motion/linear_model.py"],
     "branches: their forces in sections, and springs that are stretched in a state": [
         "results/run.py", "results/section_forces/balance_limits.py", "results/section_forces/forces.py"],
     "the plane of a scene: quantities that events watch": ["parts/in_plane.py"],

@@ -12,6 +12,7 @@ from rope_memory import (
     FORCE,
     INTEGRATORS,
     LENGTH,
+    SLIP,
     TAU,
     VISCOUS,
     WIRES,
@@ -43,13 +44,15 @@ def hung(element: str = "cable12") -> Scene:
 
 @pytest.mark.parametrize("case", VISCOUS)
 @pytest.mark.parametrize("element", ["cable8p", "cable12"])
-def test_viscosity_follows_closed_forms(case, element):
+def test_viscosity_follows_closed_forms(case, element, validated):
     """Creep is compared after the rise of the force, in which the inertia of the rope is 6e-6 of it."""
-    scene, result, closed_form, _ = VISCOUS[case]
+    scene, result, closed_form, quantity = VISCOUS[case]
     run = scene(element).run(1.5, output_step=0.05, integrator="genalpha", tol=1e-6)
     exact = closed_form(run.time)
     after = run.time >= BEGIN
-    assert np.abs(result(run) - exact)[after].max() < 1e-6 * np.abs(exact).max()
+    name, unit = quantity.split(", ")
+    validated("Ropes with memory", f"standard linear solid: {case}", name, exact[after], result(run)[after], unit=unit,
+              scale=np.abs(exact).max(), bound=1e-6, source="creep compliance, relaxation modulus", variant=element)
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
@@ -62,10 +65,12 @@ def test_every_integrator_creeps_and_relaxes_alike(integrator):
 
 @quiet
 @pytest.mark.parametrize("integrator", ["genalpha", "radau"])
-def test_a_shaken_rope_takes_the_energy_of_its_loss_modulus(integrator):
+def test_a_shaken_rope_takes_the_energy_of_its_loss_modulus(integrator, validated):
     """The energies balance."""
     found = of_loss(integrator, tol=1e-5)
-    assert found["error"] < {"genalpha": 1e-6, "radau": 1e-3}[integrator]
+    validated("Ropes with memory", "standard linear solid: harmonic strain", "loss in a cycle", found["reference"],
+              found["found"], unit="J", bound={"genalpha": 1e-6, "radau": 1e-3}[integrator], source="loss modulus",
+              variant=integrator)
     assert found["energy"] < 3e-4
 
 
@@ -196,10 +201,14 @@ def energies(run) -> np.ndarray:
     return sum(run[f"energy.{name}"] for name in ("kinetic", "elastic", "potential", "dissipated"))
 
 
-def test_a_bent_rope_follows_the_bilinear_loop():
+def test_a_bent_rope_follows_the_bilinear_loop(validated):
     """The moment by the curvature, and the energy of a cycle, of a rope so light that it hardly vibrates."""
     for found in of_friction("genalpha", step=1e-3):
-        assert found["error"] < 2e-4 and found["energy"] < 3e-6, found
+        quantity, unit = found["quantity"].rsplit(", ", 1)
+        validated("Ropes with memory", "friction between wires: bending to and fro", quantity, found["reference"],
+                  found["found"], unit=unit, scale=SLIP if unit == "N m" else None, bound=2e-4,
+                  source="bilinear loop", variant="genalpha")
+        assert found["energy"] < 3e-6, found
 
 
 @pytest.mark.parametrize("integrator", ["genalpha", "radau", "explicit"])

@@ -143,6 +143,11 @@ def everything() -> fu.Scene:
     scene.contact("hook", "bed", name="landing")
     scene.relaxation("hook", stiffness=1e3, time=0.5, name="viscosity")
     scene.wire_friction("hook", stiffness=0.5, moment=0.1, name="wires")
+    for k, name in enumerate(("fibres", "yarn")):
+        scene.cable(name, **ROPE | {"start": (0, 0, 5 + k), "end": (1, 0, 5 + k), "membrane": "tabulated",
+                                    "section": fu.Circle(radius=0.01, tension_table=fu.TensionTable(
+                                        strain=(0, 0.1), force=(0, 1e3)))})
+    scene.working_curve("fibres", permanent=0.3, curve="exponential", bend=0.5, name="worked")
     scene.crossing("rope", "B", at=(0, 0.5, 0), axis=(0, 0, 1), length=0.2, stiffness=1e3, name="touch")
     return scene
 
@@ -208,6 +213,8 @@ OTHERS = {
             "name": "x"},
     "relaxation": {"cable": "rope", "stiffness": 2e3, "time": 0.7, "name": "other"},
     "wire_friction": {"cable": "rope", "stiffness": 0.7, "moment": 0.2, "name": "other"},
+    "working_curve": {"cable": "yarn", "permanent": 0.2, "curve": "quadratic", "bend": 0.4, "highest_tension": 50.0,
+                      "name": "other"},
     "crossing": {"a": "hook", "b": "A", "at": (0, 0.6, 0), "axis": (0, 1, 1), "length": 0.3, "radius": 0.02,
                  "stiffness": 2e3, "exponent": 1.5, "damping": 0.1, "tangential_stiffness": 1e5,
                  "friction": fu.Friction(coefficient=0.2), "side": (0, 1, 0), "name": "x"},
@@ -237,7 +244,7 @@ ONE_OF_TWO = {("rope", "closed"),
               ("contact", "points"), ("contact", "restitution"), ("contact", "rest_velocity"),
               ("drag", "polar"), ("drag", "span"), ("drag", "chord"), ("drag", "added_mass_tangential"),
               ("drag", "added_mass_form"), ("fluid", "table"), ("fluid", "waves"), ("fluid", "depth"),
-              ("surface", "inside")}
+              ("surface", "inside"), ("working_curve", "strain"), ("working_curve", "force")}
 """Fields of parts that are described otherwise, or of other kinds of joints."""
 
 

@@ -43,6 +43,10 @@ def everything() -> fu.Scene:
     scene.point_mass("n-rope", s=0.5, mass=0.1, name="n-clump")
     scene.relaxation("n-rope", stiffness=1e3, time=0.5, name="n-relaxation")
     scene.wire_friction("n-rope", stiffness=0.5, moment=0.1, name="n-wires")
+    scene.cable("n-fibres", **ROPE | {"start": (0, 0, 5), "end": (2, 0, 5), "membrane": "tabulated",
+                                      "section": fu.Circle(radius=0.01, tension_table=fu.TensionTable(
+                                          strain=(0, 0.1), force=(0, 1e3)))})
+    scene.working_curve("n-fibres", permanent=0.3, name="n-worked")
     scene.crossing("n-rope", "n-beam", stiffness=1e3, name="n-crossing")
     scene.surface("n-floor", shape=fu.Plane(normal=(0, 1, 0), point=(0, -9, 0)))
     scene.surface("n-deck", on="n-hook", shape=fu.Plane(normal=(0, 1, 0), point=(0, -2, 0)))

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from funicular import Anchor, Circle, Material, Plane, Scene, Sheave
+from funicular import Anchor, Circle, Material, Plane, Scene, Sheave, TensionTable
 from funicular.parts.kinds import KINDS
 
 SOFT = Material(youngs_modulus=4e6, poisson_ratio=0, density=1000, damping_time=1e-2)
@@ -31,6 +31,10 @@ def of_supports() -> Scene:
     scene.fluid("air", density=1.2, velocity=(3, 0, 0))
     scene.drag("line", normal=1.0, name="wind")
     scene.relaxation("link", stiffness=50.0, time=0.1, name="viscosity")
+    scene.cable("fibres", start=(0, 0, 2), end=(0, -1, 2), elements=2, element="cable12", membrane="tabulated",
+                section=THIN.remade({"tension_table": TensionTable(strain=(0, 0.1), force=(0, 1e3))}), material=SOFT)
+    scene.pin("fibres", s=0)
+    scene.working_curve("fibres", permanent=0.3, name="worked")
     scene.wire_friction("link", stiffness=0.01, moment=1e-4, name="wires")
     return scene
 

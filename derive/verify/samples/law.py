@@ -62,7 +62,7 @@ def section_stiffness(traits: LawTraits, dim: int, moments: np.ndarray,
         S = 53.0 * moments[:2]
         more = {"assumed": [0.6 * S[0]], "tension_only": [0.2, 0.1]}.get(traits.membrane, [])
         if traits.membrane == "tabulated":
-            more = _segments(S[0], random)
+            more = segments(S[0], random)
         return {"S": np.array([*S, *more])}
     pairs = dim * (dim - 1) // 2
     D, on_axis_alone = (np.concatenate([random.uniform(40, 60, dim), random.uniform(5, 15, pairs),
@@ -71,9 +71,9 @@ def section_stiffness(traits: LawTraits, dim: int, moments: np.ndarray,
             "D_axis": on_axis_alone}
 
 
-def _segments(EA: float, random: np.random.Generator) -> list[float]:
+def segments(EA: float, random: np.random.Generator, end: float = 0.4) -> list[float]:
     """Return cubic segments of an axial force with kinks of the slope, from strain 0."""
-    starts = np.linspace(0, 0.4, MAX_SEGMENTS - 1)
+    starts = np.linspace(0, end, MAX_SEGMENTS - 1)
     found, integral, value = [], 0.0, 0.0
     for start, step in zip(starts, [*np.diff(starts), 0.0], strict=True):
         slope, c2, c3 = EA * random.uniform(0.5, 1.5), EA * random.uniform(-1, 1), EA * random.uniform(-5, 5)

@@ -49,6 +49,7 @@ struct fu_model {
     double load_fraction;  /* share of all loads but gravity: 1, or less on a load path of statics */
     /* in statics, of ropes that are about to slide on their sheaves: the speed in their order over the slip velocity */
     double impending;
+    int vibrates; /* in statics: whether tangents are those of small vibrations about the state */
     const fu_lapack *lapack;
     fu_threads *threads; /* null for one thread, which needs nothing of the following */
     /* n_coordinates^2 for each element of the longest cable: contributions of threads that are added afterwards */

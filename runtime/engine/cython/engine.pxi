@@ -224,6 +224,7 @@ cdef extern from * nogil:
         const int *unknown_of_dof, *combination_start, *combination_unknown
         const double *combination_value, *weight, *gravity, *zero
         double load_fraction, impending
+        int vibrates
         const fu_lapack *lapack
         fu_threads *threads
         double *thread_work

@@ -144,6 +144,10 @@ cdef class Statics(Translation):
             for k in range(3):
                 self.shapes[i].g[k] = weight * self.weight["shapes"][i][k]
 
+    def vibrate(self, on):
+        """Let tangents be those of small vibrations about the static state, where these differ from those of loading."""
+        self.model.vibrates = on
+
     def impend(self, double slip):
         """Let ropes be about to slide on their sheaves in static states: speed in their order over the slip velocity."""
         self.model.impending = slip

@@ -23,6 +23,7 @@
     WITH_EVENTS(crossing)                                                                                              \
     WITH_EVENTS(contact)                                                                                               \
     ALONE(branch)                                                                                                      \
+    ALONE(working_curve)                                                                                               \
     ALONE(rope_contact)                                                                                                \
     WITH_EVENTS(hard_contact)
 

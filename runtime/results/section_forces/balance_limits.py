@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from ...errors import SceneError
+from ...model.branches import BranchModel
 from ...model.contacts import ContactModel
 from ...model.model import Model
+from ...model.working_curves import WorkingCurveModel
 from ...parts.scene_data import SceneData
 
 REMEDY = 'take method="constitutive", which follows from the strains'
@@ -35,10 +37,12 @@ def out_of_balance(scene: SceneData, model: Model, cable: int, is_rest: bool) ->
     Contacts of other cables count only if ties connect these to this one.
     """
     concerned = balanced_cables(scene, model, cable, is_rest)
-    for branch in model.branches:
-        if branch.cable in concerned:
-            return SceneError(scene.branches[branch.name].where, "has forces within elements that a balance does not "
-                              f'know, of cable "{model.cables[branch.cable].name}"', REMEDY)
+    forces: list[BranchModel | WorkingCurveModel] = [*model.branches, *model.working_curves]
+    for within in forces:
+        if within.cable in concerned:
+            part = scene.branches.get(within.name) or scene.working_curves[within.name]
+            return SceneError(part.where, "has forces within elements that a balance does not "
+                              f'know, of cable "{model.cables[within.cable].name}"', REMEDY)
     for contact in model.contacts:
         if contact.cable in concerned and (why := _unknown(contact, is_rest)):
             return SceneError(f'contact "{contact.name}"', f'{why} "{model.cables[contact.cable].name}"', REMEDY)

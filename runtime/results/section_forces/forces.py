@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...base.quadrature import gauss
 from ...errors import FunicularError, FunicularWarning, UnknownResultError, near
 from ...integrators import INTEGRATORS
 from ...kernels.libraries import kernels_of
 from ...model.constants import grown_shape
 from ...model.model import Model, per_grown
 from ...parts.cable import Cable
+from ...parts.cubic_segments import value as value_of
 from ...parts.event import first_times
 from ...parts.in_plane import in_plane
 from ...parts.locations import attached
@@ -105,6 +107,8 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
     if scene.branches:
         more, bending = _of_branches(scene, at, cable, cuts, axes[..., 0, :], strain[..., 0])
         force, moment = force + more, moment + bending
+    if scene.working_curves:
+        force = force + _of_working_curves(scene, at, cable, cuts, strain[..., 0])[..., None] * axes[..., 0, :]
     if method == "constitutive":
         return {"force": force, "moment": moment} | components(cable, force, moment, axes, strain)
     if (refusal := out_of_balance(scene, model, number, at.is_rest)) is not None:
@@ -143,6 +147,28 @@ def _of_branches(scene: SceneData, at: Instants, cable: Cable, cuts: Cuts, tange
         else:
             force = force + value * tangent
     return force, moment
+
+
+def _of_working_curves(scene: SceneData, at: Instants, cable: Cable, cuts: Cuts, strain: np.ndarray) -> np.ndarray:
+    """Return the change (T, n) of the axial force by working curves, N; strain (T, n): of the axis.
+
+    The highest strain is linear between the points of an element, and constant beyond them.
+    """
+    change = np.zeros_like(strain)
+    x: np.ndarray = cuts.x / cable.mesh.each_length(cuts.element)
+    x, element = np.broadcast_to(x, strain.shape), np.broadcast_to(cuts.element, strain.shape)
+    instants = np.arange(len(at.time))[:, None]
+    for curve in (each for each in scene.working_curves.values() if each.cable == cable.name):
+        highest = at.value(f"{curve.name}.highest_strain").reshape(len(at.time), cable.n_elements, -1)
+        places = (1 + gauss(highest.shape[2])[0]) / 2
+        k = np.clip(np.searchsorted(places, x) - 1, 0, len(places) - 2)
+        share = np.clip((x - places[k]) / (places[k + 1] - places[k]), 0, 1)
+        top = (1 - share) * highest[instants, element, k] + share * highest[instants, element, k + 1]
+        for piece in cable.uniform_pieces:
+            assert piece.section.tension_table is not None  # as the law has one
+            first, of = piece.section.tension_table.numbers(), (piece.first <= element) & (element < piece.end)
+            change[of] = curve.force_at(first, strain[of], top[of]) - value_of(first, strain[of])
+    return change
 
 
 def along_ground(model: Model, name: str, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:

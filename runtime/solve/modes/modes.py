@@ -105,6 +105,7 @@ def modes(scene: SceneData, n: int, about: RestState | None = None, as_drawn: bo
     static = StaticState(scene, EquilibriumSettings(), model)
     engine = static.engine
     notes = _begin(static, about, as_drawn, stick)
+    engine.vibrate(True)
     K, constraints = condensed(engine.matrix(0.0, 0.0, 1.0), model)
     size = K.shape[0]
     if stick and rough_sheaves(scene.ropes.values()):
