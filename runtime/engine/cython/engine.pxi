@@ -328,7 +328,7 @@ cdef extern from * nogil:
         fu_accelerator accelerator
         fu_record record
         fu_statistics statistics
-        double *rhs, *psi, *force, *work, *before, *first, *s_slope
+        double *rhs, *psi, *force, *work, *before, *first, *s_slope, *path_rate
         double h, motion, extent, controlled_motion, closed
         int stopped_slide, left, left_by, rest_start
         fu_failure failure

@@ -440,4 +440,5 @@ cdef class Translation(Arrays):
         run.psi, run.force = self._zeros(n_dof), self._zeros(n_dof)
         run.work, run.before = self._zeros(n_dof), self._zeros(n_dof)
         run.first, run.s_slope = self._zeros(model.n_q), self._zeros(self.model.n_coordinates)
+        run.path_rate = self._zeros(self.model.n_coordinates)
         self._set_event_functions([])

@@ -83,6 +83,7 @@ struct fu_run {
     double *rhs;                         /* unknowns, and FU_BAND_BEYOND */
     double *psi, *force, *work, *before; /* n_dof; force is that of supports and motions after Newton's iteration */
     double *s_slope;                     /* per slide: predicts ds/dt; by run/steps.c */
+    double *path_rate;                   /* per slide: on its path at `now`; by fu_time_to_boundary */
 
     /* Events: written by events/. */
     int n_event_functions;

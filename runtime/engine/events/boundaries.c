@@ -119,7 +119,7 @@ double fu_time_to_boundary(const fu_run *run)
     FU_EACH_COUPLING(c, run->model->always_active, run->model->n_always_active) {
         const fu_path path = fu_path_of(run->model, c, &run->now);
         if (!path.n) continue;
-        const double rate = fu_path_rate(path, run, c, &run->now);
+        const double rate = run->path_rate[c->coordinate] = fu_path_rate(path, run, c, &run->now);
         const double end = fu_boundary(path, segment_of(c, &run->now) + (rate > 0.0));
         const double distance = fabs(end - fu_path_coordinate(path, c, &run->now));
         if (distance > fu_boundary_tolerance(path)) least = fmin(least, distance / fabs(rate));
@@ -133,7 +133,7 @@ double fu_time_to_boundary(const fu_run *run)
 static double part_to_turn(const fu_run *run, const fu_coupling *c, fu_path path, double h)
 {
     const fu_path next = fu_path_of(run->model, c, &run->next);
-    const double rise = h * fu_path_rate(path, run, c, &run->now), tolerance = fu_boundary_tolerance(path);
+    const double rise = h * run->path_rate[c->coordinate], tolerance = fu_boundary_tolerance(path);
     const double moved = fu_path_coordinate(next, c, &run->next) - fu_path_coordinate(path, c, &run->now);
     const double part = 0.5 * rise / (rise - moved), s = fu_path_coordinate(path, c, &run->now);
     const int up = rise > 0.0, segment = segment_of(c, &run->now);
@@ -144,7 +144,8 @@ static double part_to_turn(const fu_run *run, const fu_coupling *c, fu_path path
     return part > 0.0 && part < 1.0 && (returns || leaves) ? part : 0.0;
 }
 
-/* Returns the time after `now` of the first such reversal of all couplings, s; 0 for none. */
+/* Returns the time after `now` of the first such reversal of all couplings, s; 0 for none. fu_time_to_boundary has
+ * computed their rates at `now`. */
 double fu_time_of_turn(const fu_run *run, double h)
 {
     FU_EACH_COUPLING(c, run->model->always_active, run->model->n_always_active) {
