@@ -79,8 +79,16 @@ enum { LINK_PIVOTS = FU_FRAME_DOFS + 3, LINK = LINK_PIVOTS + 3 };
 _Static_assert(LINK_PIVOTS == 4 + 4 + 1, "as forward and backward do them");
 _Static_assert((int)LINK <= (int)FU_UNPACKED_FRONT, "backward takes the columns of others where they are");
 
+/* A rider of a slide: its body is eliminated before the slide's coordinate and force. */
+enum { RIDER_PIVOTS = FU_FRAME_DOFS, RIDER = RIDER_PIVOTS + 4 };
+_Static_assert((int)RIDER <= (int)FU_UNPACKED_FRONT, "its columns stay where they are");
+
 FU_INLINE void forward(const double *F, int n, int done, double *restrict x)
 {
+    if (n == RIDER && done == RIDER_PIVOTS) {
+        eliminated(F, RIDER, 0, RIDER_PIVOTS, x);
+        return;
+    }
     if (n != LINK || done != LINK_PIVOTS) {
         eliminated(F, n, 0, done, x);
         return;
@@ -92,6 +100,10 @@ FU_INLINE void forward(const double *F, int n, int done, double *restrict x)
 
 FU_INLINE void backward(const double *F, int stride, int n, int done, double *restrict x)
 {
+    if (n == RIDER && done == RIDER_PIVOTS) {
+        substituted(F, RIDER, RIDER, RIDER_PIVOTS, x);
+        return;
+    }
     if (n != LINK || done != LINK_PIVOTS) {
         substituted(F, stride, n, done, x);
         return;
