@@ -242,11 +242,11 @@ static double error(fu_run *run, double h)
 
 static double dissipated_power(fu_run *run, const fu_linear_space *w, const fu_state *state)
 {
-    return fu_linear_model_dissipation(run, w->motion.velocity, w->force) +
+    return fu_linear_model_dissipation(run, w->motion.velocity) +
            fu_coupling_dissipation(run->model, state, &run->accelerator);
 }
 
-/* Computes the powers of `next`, by its exact forces in w->force, which it overwrites. */
+/* Computes the powers of `next`, by its exact forces in w->force. */
 static void find_powers(fu_run *run, const fu_linear_space *w, double *dissipated, double *external)
 {
     fu_linear_multipliers(run, w);

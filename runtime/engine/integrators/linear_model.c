@@ -100,12 +100,12 @@ void fu_linear_model_cable_forces(const fu_run *run, const fu_small_motion *moti
 }
 
 /* Returns the power of the damping of cables, W. */
-double fu_linear_model_dissipation(const fu_run *run, const double *velocity, double *force)
+double fu_linear_model_dissipation(const fu_run *run, const double *velocity)
 {
-    const int n = fu_rope_dofs(run->model).first;
-    memset(force, 0, sizeof(double) * (size_t)(FU_HALF_BAND_ROWS(n) + run->linear->stride));
-    add_product(run->linear, n, FU_DAMPING, velocity, force);
-    return fu_dot(n, velocity, force);
+    const fu_linear_model *linear = run->linear;
+    double power;
+    fu_half_band_form(fu_rope_dofs(run->model).first, linear->stride, linear->cables[FU_DAMPING], velocity, &power);
+    return power;
 }
 
 /* Returns a force of a cable's dof by a row of its matrices, and the first entries of the columns before it. */

@@ -80,7 +80,7 @@ void fu_linear_model_cable_forces(const fu_run *run, const fu_small_motion *moti
                                   fu_cable_totals *totals);
 /* Returns the force of one dof. */
 double fu_linear_model_cable_force(const fu_run *run, const fu_small_motion *motion, int dof);
-/* Returns the power of the damping of cables, W; force: work space. */
-double fu_linear_model_dissipation(const fu_run *run, const double *velocity, double *force);
+/* Returns the power of the damping of cables, W. */
+double fu_linear_model_dissipation(const fu_run *run, const double *velocity);
 
 #endif

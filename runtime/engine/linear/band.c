@@ -266,3 +266,21 @@ FU_INLINE void add_half_bands_times(int n, int stride, int count, double *const 
 FU_SIMD_FUNCTION(fu_add_half_bands_times, add_half_bands_times,
                  (int n, int stride, int count, double *const *A, const double *const *x, double *y),
                  (n, stride, count, A, x, y))
+
+/* Computes value = x' A x of such a matrix: twice the product of the upper half, less the diagonal's part. */
+FU_INLINE void half_band_form(int n, int stride, const double *A, const double *x, double *value)
+{
+    fu_simd_block sums = {0.0};
+    double diagonal = 0.0;
+    for (int i = 0; i < n; ++i, A += stride, ++x) {
+        fu_simd_block row = {0.0};
+        for (int j = 0; j < stride; j += FU_SIMD_WIDTH)
+            row += *(const fu_simd_block *)(A + j) * *(const fu_simd_block *)(x + j);
+        sums += row * *x;
+        diagonal += *A * *x * *x;
+    }
+    *value = 2.0 * ((sums[0] + sums[1]) + (sums[2] + sums[3])) - diagonal;
+}
+
+FU_SIMD_FUNCTION(fu_half_band_form, half_band_form,
+                 (int n, int stride, const double *A, const double *x, double *value), (n, stride, A, x, value))

@@ -122,6 +122,7 @@ void fu_band_solve(int n, int width, const double *A, int first, double *x);
 /* Rows of the upper half of a band of n rows, in whole groups. */
 #define FU_HALF_BAND_ROWS(n) (((n) + FU_BAND_GROUP - 1) / FU_BAND_GROUP * FU_BAND_GROUP)
 void fu_add_half_bands_times(int n, int stride, int count, double *const *A, const double *const *x, double *y);
+void fu_half_band_form(int n, int stride, const double *A, const double *x, double *value);
 
 int fu_unsymmetric_pack(const fu_system *system, int chain, double *L, double *U);
 int fu_unsymmetric_factor(int n, int width, double *L, double *U);
