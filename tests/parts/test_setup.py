@@ -15,8 +15,8 @@ from funicular.solve.motion import integrator_choice
 from setup import bodies, calls, rope, set_up
 
 CEILINGS = {"paper51": (3230, 1200), "cable_car": (7130, 3720), "zip_line": (5220, 2470)}
-"""Calls of Python and C functions that it takes to make a scene and to set its run up, up to an eleventh above those counted; a
-ceiling moves up only on purpose.
+"""Calls of Python and C functions that it takes to make a scene and to set its run up, up to an eleventh above those
+counted; a ceiling moves up only on purpose.
 """
 RUN_CEILINGS = {"paper51": 1900}
 """The same of a whole run with one of its results read, and with its notes."""
