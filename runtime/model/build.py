@@ -67,7 +67,7 @@ def build(scene: SceneData, supplied: bool = False) -> Model:
                        *(body_weights(body, dim) for body in described)),
         gravity=_joined(*_weights(scene, drawn, cables, gravity), *(0 * rope.q for rope in ropes), driven.still,
                         *(body_gravity(body, gravity) for body in bodies)),
-        unknown_of_dof=np.append(reduction.unknown_of_dof, beside_cables).astype(int),
+        unknown_of_dof=np.concatenate([reduction.unknown_of_dof, beside_cables]).astype(int),
         combinations=reduction.combinations,
         n_band=numbering.n_band,
         n_border_dof=reduction.n_unknowns - numbering.n_band + int(is_free.sum()),
@@ -94,8 +94,10 @@ def elements_of(cables: list[CableModel]) -> np.ndarray:
     found = [np.zeros((0, 2), dtype=int)]
     for cable in cables:
         size = math.prod(cable.shape[1:])
-        first = cable.first + size * cable.mesh.first_node(np.arange(cable.n_elements))
-        found.append(np.stack([first, np.full(len(first), 2 * size)], axis=1))
+        of_cable = np.empty((cable.n_elements, 2), dtype=int)
+        of_cable[:, 0] = cable.first + size * cable.mesh.first_node(np.arange(cable.n_elements))
+        of_cable[:, 1] = 2 * size
+        found.append(of_cable)
     return np.concatenate(found)
 
 

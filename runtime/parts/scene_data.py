@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from copy import copy
 from functools import cache
 from itertools import count, islice
 from typing import TYPE_CHECKING, Any, Never, Self
@@ -335,9 +334,9 @@ class SceneData:
 
     def copied(self) -> Self:
         """Return a scene of the same parts, to which parts can be added independently."""
-        made = copy(self)
-        held = vars(made)
-        held.update({name: value.copy() for name, value in held.items() if isinstance(value, HOLDERS)})
+        made = object.__new__(type(self))
+        vars(made).update({name: value.copy() if isinstance(value, HOLDERS) else value
+                           for name, value in vars(self).items()})
         return made
 
     def replaced(self, made: Callable[[Part], Part]) -> Self:
