@@ -33,9 +33,7 @@ tangent point on an almost straight rope then has little inertia."""
 
 def placed_rope(scene: SceneData, rope: Rope) -> Rope:
     """Return the rope with complete attachments, checked to lie in the plane and to have a possible route."""
-    if scene.temperature is not None:
-        raise SceneError(rope.where, "the scene has a temperature, but the length of a rope does not change with it",
-                         "give cables their temperature, and the rope its length")
+    rope = _warmed(scene, rope)
     for cable in scene.cables.values():
         _check_pair(rope.where, rope, cable)
     if other := next((each for each in scene.ropes.values() if each.dim != rope.dim), None):
@@ -49,6 +47,22 @@ def placed_rope(scene: SceneData, rope: Rope) -> Rope:
     for message in _notes(scene, rope):
         report(scene, message)
     return rope
+
+
+def _warmed(scene: SceneData, rope: Rope) -> Rope:
+    """Return a rope with the temperature of the scene where it has none. Raises SceneError."""
+    if rope.temperature is not None or scene.temperature is None:
+        return rope
+    if not isinstance(scene.temperature, float):
+        raise SceneError(rope.where, "the temperature of the scene is a signal, but a rope takes a number alone: its "
+                         "material runs through the spans by its stress-free length, which must not change",
+                         "give the rope its own temperature in K, or let a drum pay out what it lengthens by")
+    warm = rope.completed({"temperature": scene.temperature})
+    try:
+        warm.check_growth()
+    except ValueError as error:
+        raise SceneError(rope.where, *error.args) from None
+    return warm
 
 
 def check_apart_from_ropes(scene: SceneData, part: Part) -> None:

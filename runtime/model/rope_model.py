@@ -122,7 +122,7 @@ class RopeModel:
     @property
     def rho(self) -> float:
         """Return its mass per stress-free length, kg/m."""
-        return float(self.part.material.density * self.part.section.mass_moments()[0])
+        return float(self.part.warm_material.density * self.part.section.mass_moments()[0])
 
     def mass_of_element(self, span: int) -> float:
         """Return the mass of an element of a span by its length as drawn, kg."""

@@ -82,6 +82,7 @@ class Cable(DrawnCable, CableFields):
 
     kind = "cable"
     group = "cables"
+    of_scene = ("temperature",)
 
     @model_validator(mode="before")
     @classmethod

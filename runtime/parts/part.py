@@ -109,6 +109,9 @@ class Part(BaseModel, metaclass=_TranslatingType):
     results: ClassVar[dict[str, Quantity]] = {}
     """Its results, beside the nodal vectors of cables and the modes of bodies."""
 
+    of_scene: ClassVar[tuple[str, ...]] = ()
+    """Its fields that repeat a value of the scene where they were not given: scene files leave them out."""
+
     def __setattr__(self, name: str, value: Any) -> None:
         """Refuse changes, which the scene would not check."""
         if name in type(self).model_fields or name in self.keywords():

@@ -15,7 +15,19 @@ from .rope_items import ROUTE_ITEMS, Anchor, Block, Drum, RouteItem, Sheave
 from .schemas import POINT, checked, number_schema
 from .section import AnySection, Rectangle, outer_radius_of
 from .section_stiffness import law_of_measures, section_stiffness
-from .validation import MAX_COUNT, Flag, Name, items, one_of, positive, positive_number, show, shown, whole_number
+from .validation import (
+    MAX_COUNT,
+    Flag,
+    Name,
+    finite,
+    items,
+    one_of,
+    positive,
+    positive_number,
+    show,
+    shown,
+    whole_number,
+)
 
 if TYPE_CHECKING:
     from .rope_drawing import Holders
@@ -104,10 +116,14 @@ class Rope(Part):
         density, the bending stiffness, ``elements``, zones of sheaves and the velocity of their friction have no effect
     section: cross-section, whose height is in the plane
     material: material, with the damping of the rope
+    temperature: above that at which ``length`` is given, K, also of what is on drums; by default that of the scene. By
+        ``thermal_expansion`` of the material it lengthens the stress-free rope, whose mass, section and stiffness stay;
+        ``tension``, s and lengths in store are those at the temperature
     """
 
     kind = "rope"
     group = "ropes"
+    of_scene = ("temperature",)
     parts_within = (Sheave, Drum)
     results: ClassVar[dict[str, Quantity]] = {
         "position": Quantity(("time", "{part}.point", "xyz"), "m", "points along the rope: of a wrap as many as "
@@ -130,6 +146,7 @@ class Rope(Part):
     length: LengthOfSpans | None = None
     element: Annotated[str, one_of(ELEMENTS)] = PLANAR
     mass: Flag = True
+    temperature: Annotated[float, finite("K")] | None = None
 
     @model_validator(mode="after")
     def _has_a_route(self) -> "Rope":
@@ -217,6 +234,38 @@ class Rope(Part):
                              "give damping_time, or the drag of the bodies on it")
         return self
 
+    @model_validator(mode="after")
+    def _can_grow(self) -> "Rope":
+        self.check_growth()
+        return self
+
+    def check_growth(self) -> None:
+        """Raise ValueError(cause, remedy) where its stress-free length cannot grow as given."""
+        if self.temperature and self.material.thermal_expansion is None:
+            raise ValueError("has a temperature, but its material has no thermal_expansion",
+                             "give the material one, 0 for a rope that keeps its length")
+        if not self.growth > 0:
+            raise ValueError(f"the stress-free length must stay positive, got {self.growth:.6g} times the length at "
+                             "0 K", "give temperature in K above the stress-free state, thermal_expansion in 1/K")
+
+    @property
+    def growth(self) -> float:
+        """Return the factor of its stress-free length by its temperature."""
+        return 1.0 + (self.temperature or 0.0) * (self.material.thermal_expansion or 0.0)
+
+    @property
+    def warm_length(self) -> float | tuple[float, ...] | None:
+        """Return its stress-free length at its temperature, or those of its spans, m; None where it is not given."""
+        if isinstance(self.length, tuple):
+            return tuple(self.growth * each for each in self.length)
+        return None if self.length is None else self.growth * self.length
+
+    @property
+    def warm_material(self) -> Material:
+        """Return its material at its temperature: the stress-free rope has its mass, section and stiffness."""
+        return self.material if self.growth == 1.0 else self.material.model_copy(
+            update={"density": self.material.density / self.growth})
+
     @property
     def dim(self) -> int:
         """Return the dimension of space, 2 or 3."""
@@ -283,7 +332,7 @@ class Rope(Part):
     @property
     def uniform_pieces(self) -> tuple[UniformPiece, ...]:
         """Return its one piece, see `Cable.uniform_pieces`."""
-        return UniformPiece(0, self.n_elements, self.section, self.material),
+        return UniformPiece(0, self.n_elements, self.section, self.warm_material),
 
     @property
     def n_elements(self) -> int:

@@ -37,7 +37,12 @@ class Roped(Protocol):
     closed: bool
     mass: bool
     tension: float | None
-    length: float | tuple[float, ...] | None
+    temperature: float | None
+
+    @property
+    def warm_length(self) -> float | tuple[float, ...] | None:
+        """Return its stress-free length at its temperature, or those of its spans, m."""
+        ...
 
     @property
     def where(self) -> str:
@@ -185,10 +190,11 @@ def _point(rope: Roped, k: int, centre: np.ndarray, sense: int) -> RoutePoint:
 
 def stretched(rope: Roped, route: DrawnRoute) -> DrawnRoute:
     """Return a route with the stretch of its rope. Raises ValueError(cause, remedy) for one that is not taut."""
-    if not isinstance(rope.length, tuple):
-        return replace(route, stretch=_stretch(rope, rope.length, route.length))
+    length = rope.warm_length
+    if not isinstance(length, tuple):
+        return replace(route, stretch=_stretch(rope, length, route.length))
     spans = tuple(_taut(k, free, span.length) for k, (free, span) in enumerate(
-        zip(rope.length, route.spans, strict=True)))
+        zip(length, route.spans, strict=True)))
     strains = [span.length / free - 1 for span, free in zip(route.spans, spans, strict=True)]
     zones = tuple(_zones(arc.length, sheave.n_zones, strains[before], strains[after]) for arc, sheave, (before, after)
                   in zip(route.sheaves, rope.sheaves, route.beside_sheaves, strict=True))
@@ -220,14 +226,14 @@ def _stretch(rope: Roped, length: float | None, drawn: float) -> float:
     if length is None:
         assert rope.tension is not None, f"{rope.where} has neither tension nor length"
         return 1 + rope.tension / rope.stiffness[0]
-    out = length - rope.length_in_store
+    out, warm = length - rope.length_in_store, " at its temperature" if rope.temperature else ""
     if out <= 0:
-        raise ValueError(f"is too short: its length {show(length, 'm')} is that of the whole rope, and its "
+        raise ValueError(f"is too short: its length {show(length, 'm')}{warm} is that of the whole rope, and its "
                          f"drums have {show(rope.length_in_store, 'm')} in store",
                          "give a greater length, or tension")
     if out > (1 + LENGTH_TOLERANCE) * drawn:
         wound = f" without {show(rope.length_in_store, 'm')} in store" if rope.length_in_store else ""
-        raise ValueError(f"is never taut: its length {show(length, 'm')}{wound} exceeds that of its route as "
+        raise ValueError(f"is never taut: its length {show(length, 'm')}{warm}{wound} exceeds that of its route as "
                          f"drawn, {show(drawn, 'm')}, by {show(out - drawn, 'm')}",
                          "give a smaller length, or tension")
     return max(1.0, drawn / out)

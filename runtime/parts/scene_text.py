@@ -251,7 +251,9 @@ def dumps(scene: SceneData) -> str:
             if part.kind == kind and isinstance(part, Event) and part.function is not None:
                 lines += ["", f"# {part.where} watches a function, which a file cannot describe"]
             elif part.kind == kind:
-                lines += ["", f"[[{kind}]]", *_lines(plain_data(part))]
+                found = {name for name in part.of_scene if name not in part.model_fields_set}
+                lines += ["", f"[[{kind}]]", *_lines({name: value for name, value in plain_data(part).items()
+                                                      if name not in found})]
     for name in SETTINGS:
         if settings := getattr(scene, f"{name}_settings"):
             lines += ["", f"[{name}]", *_lines(settings)]

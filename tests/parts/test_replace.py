@@ -165,7 +165,7 @@ OTHERS = {
     "rope": {"name": "cord", "route": [fu.Anchor("A"), fu.Sheave("high", at=(0, 4, 0), radius=0.3), fu.Anchor("A", at=(
              1, 0, 0))], "section": fu.Circle(radius=0.02), "elements": (2, 3), "tension": 2e3, "length": 6.0,
              "material": fu.Material(youngs_modulus=2e9, poisson_ratio=0.3, density=1000), "element": "cable8p",
-             "mass": False},
+             "mass": False, "temperature": 0.0},
     "cable": {"name": "cord", "start": (0, 0, 0.0), "end": (1.0, 0, 0), "points": ((0, 0, 0), (0.5, 0, 0), (1, 0, 0)),
               "curve": lambda u: (u, 0, 0), "elements": 8, "nodes": (0, 0.25, 1.0),
               "element": "cable18", "law": "engineering_linear",

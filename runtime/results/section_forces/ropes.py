@@ -188,7 +188,7 @@ class _Span:
         part, length = self.rope.part, float(self.s[0, -1] - self.s[0, 0])
         cable = Cable(name="span", start=(0, 0, 0), end=(length, 0, 0), elements=self.s.shape[1] - 1,
                       element=part.element, strain="engineering", curvature="exact", membrane="assumed", up=(0, 1, 0),
-                      section=part.section, material=part.material)
+                      section=part.section, material=part.warm_material)
         scene.put(cable)
         model = build(scene)
         q = self.vectors.reshape(1, -1)

@@ -117,6 +117,8 @@ class Changes:
         """Return the change by gravity or by the temperature of the scene, None where it is more than a `Change`."""
         if path.head != TEMPERATURE:
             return self._gravity(path)
+        if self.scene.ropes:
+            return None
         return self._warmer([cable for cable in self.scene.cables.values()
                              if "temperature" not in cable.model_fields_set])
 
