@@ -170,10 +170,11 @@ def _add_droppers(scene: Scene, section: Section, k: int, formed: SpanForm, on_m
                   on_contact: list[float]) -> None:
     """Add the droppers of a span, counted from 0, at places on both wires, in m, and the masses at their ends."""
     wires = section.called(f"messenger_{k + 1}"), section.called("contact")
+    growth = formed.span.droppers.growth(scene.temperature)
     for j, s in enumerate(zip(on_messenger, on_contact, strict=True)):
         upper, lower = zip(wires, s, strict=True)
         scene.spring(upper, lower, name=section.called(f"dropper_{k + 1}_{j + 1}"), tension_only=True,
-                     stiffness=float(formed.stiffnesses[j]), length=float(formed.lengths[j]))
+                     stiffness=float(formed.stiffnesses[j]), length=float(growth * formed.lengths[j]))
         for (wire, place), mass in ((upper, float(formed.hanging[j])), (lower, formed.span.droppers.contact_clamp)):
             if mass:
                 scene.force(wire, s=place, value=(0, scene.gravity[1] * mass, 0))

@@ -173,14 +173,17 @@ def scene(lines: Line | Form | Sequence[Line | Form], longest: tuple[float, floa
     spans beside the first ones of the next; overlaps: the number of these spans, or one for each pair of sections.
     longest: as in `form`. The contact wire is "contact", the messenger "messenger_1" from the first mast to the second,
     the droppers "dropper_1_1" and so on, supports and steady arms "support_1" and "arm_0" by their masts; in the second
-    section "section_2_contact" and so on. temperature: of the wires above that of the form, in K, a number or signal.
+    section "section_2_contact" and so on. temperature: above that of the form, in K, of the wires a number or a signal,
+    of droppers with a ``thermal_expansion`` a number.
     broken: droppers by name with the time at which each breaks, in s, 0 for one that is missing from the start; their
     masses stay. Raises SceneError, EquilibriumError.
     """
     given = [lines] if isinstance(lines, Line | Form) else [*lines]
     sections = in_sections([each if isinstance(each, Line) else each.line for each in given], overlaps)
-    formed = [form(each, longest) if isinstance(each, Line) else each for each in given]
     made = Scene(gravity=(0, -sections[0].line.gravity, 0), temperature=temperature)
+    for span in (span for section in sections for span in section.line.each):
+        span.droppers.growth(made.temperature)
+    formed = [form(each, longest) if isinstance(each, Line) else each for each in given]
     planar = all(section.line.planar for section in sections)
     for section, each in zip(sections, formed, strict=True):
         add_spans(made, section, each.spans, each.contact_length, each.heights, each.longest, planar)

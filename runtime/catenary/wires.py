@@ -10,6 +10,7 @@ from pydantic import model_validator
 from ..errors import SceneError
 from ..parts.part import Part
 from ..parts.schemas import checked
+from ..parts.signal import Signal
 from ..parts.validation import Flag, finite, list_of, not_negative, positive, shown, vector
 
 MODULUS = 1e11
@@ -71,6 +72,7 @@ class Droppers(Part):
     axial_stiffness EA in N, for a stiffness of EA over the length. sag: depth of the contact wire at each dropper below
     that at the outer ones, in m, negative above it; one number: that of a parabola between the outer ones. mass in
     kg/m; messenger_clamp and contact_clamp in kg. A dropper's own mass is on the messenger, on which a slack one hangs.
+    thermal_expansion in 1/K, for scenes with a temperature, by default 0.
     """
 
     at: Annotated[tuple[float, ...], list_of("m", least=0)]
@@ -80,6 +82,7 @@ class Droppers(Part):
     mass: Annotated[float, not_negative("kg/m")] = 0.0
     messenger_clamp: Annotated[float, not_negative("kg")] = 0.0
     contact_clamp: Annotated[float, not_negative("kg")] = 0.0
+    thermal_expansion: Annotated[float, finite("1/K")] = 0.0
 
     @model_validator(mode="after")
     def _fits(self) -> Droppers:
@@ -95,6 +98,20 @@ class Droppers(Part):
         if not isinstance(self.sag, tuple) and self.sag and len(self.at) < 3:
             raise ValueError(f"are {len(self.at)}: no parabola has its depth between them", "give a sag for each")
         return self
+
+    def growth(self, temperature: float | Signal | None) -> float:
+        """Return the factor of their lengths at a temperature in K. Raises SceneError."""
+        if temperature is None or not self.thermal_expansion:
+            return 1.0
+        if isinstance(temperature, Signal):
+            raise SceneError("catenary", "temperature is a signal, but droppers take a number alone by their "
+                             "thermal_expansion", "leave thermal_expansion of the droppers out: they are short beside "
+                             "the wires")
+        factor = 1.0 + self.thermal_expansion * temperature
+        if not factor > 0:
+            raise SceneError("catenary", f"droppers must keep a positive length, got {factor:.6g} times the one at 0 K",
+                             "give temperature in K above that of the form, thermal_expansion in 1/K")
+        return factor
 
     def stiffness_of(self, length: float) -> float:
         """Return the stiffness of a dropper of some length (m), in N/m."""

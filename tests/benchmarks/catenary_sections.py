@@ -139,9 +139,11 @@ def strings(of: catenary.Line, temperature: float) -> np.ndarray:
     forces, distances, free = state(reference, -droppers.depths, 0.0)
     lengths = distances / (1 + forces / droppers.axial_stiffness)
 
+    warm = lengths * droppers.growth(temperature)
+
     def gap(unknown: np.ndarray) -> np.ndarray:
         pulls, apart, now = state(unknown[:2] * 1e4, unknown[2:], temperature)
-        return np.concatenate([1e3 * (now - free), apart - lengths * (1 + pulls / droppers.axial_stiffness)])
+        return np.concatenate([1e3 * (now - free), apart - warm * (1 + pulls / droppers.axial_stiffness)])
 
     found = root(gap, np.concatenate([reference / 1e4, -droppers.depths]), method="lm", tol=1e-14)
     assert np.abs(found.fun).max() < 1e-8, found

@@ -1,9 +1,12 @@
 """Temperature of catenaries: tensions of held wires against strings, balance weights, anchors, refusals."""
 
+from dataclasses import replace
+
 import funicular as fu
 import numpy as np
 import pytest
 from catenary_sections import COARSE, heights_off, line, strings, tensions, unequal
+from expectations import refused
 from funicular import catenary
 
 LAST = catenary.End(), catenary.End(weights=True)
@@ -23,6 +26,22 @@ def test_held_wires_tighten_and_slacken_as_strings_do(fine, temperature, validat
                                         (1e-4, 1e-3), strict=True):
         validated("Catenaries", f"held ends, {temperature:g} K", f"tension of the {name}", exact, ours, unit="N",
                   bound=bound, source="two strings with springs between")
+
+
+def test_droppers_lengthen(fine):
+    """By 4 %: the messenger bears more, and the contact wire hangs lower, as by strings."""
+    longer = fine.line.remade({"droppers": fine.line.droppers.remade({"thermal_expansion": 1e-3})})
+    scenes = [catenary.scene(form, temperature=40.0) for form in (fine, replace(fine, line=longer, spans=tuple(
+        replace(each, span=replace(each.span, droppers=longer.droppers)) for each in fine.spans)))]
+    assert scenes[1].point_forces["dropper_1_1"].length == pytest.approx(1.04 * fine.lengths[0], rel=1e-12)
+    found = tensions(scenes[1]) - tensions(scenes[0])
+    assert found == pytest.approx(strings(longer, 40.0) - strings(fine.line, 40.0), rel=1e-2)
+    with refused("catenary: temperature is a signal, but droppers take a number alone by their thermal_expansion; "
+                 "leave thermal_expansion of the droppers out: they are short beside the wires"):
+        catenary.scene(longer, COARSE, temperature=fu.Ramp(start=0, end=1))
+    with refused("catenary: droppers must keep a positive length, got -1 times the one at 0 K; give temperature in K "
+                 "above that of the form, thermal_expansion in 1/K"):
+        catenary.scene(longer, COARSE, temperature=-2000.0)
 
 
 @pytest.mark.parametrize("ends", [LAST, LAST[::-1]], ids=["last", "first"])
