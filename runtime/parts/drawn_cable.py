@@ -155,6 +155,8 @@ class DrawnCable(Fields):
         strain under the forces of the piece before it, or by heat, is another one.
         """
         pieces = self.uniform_pieces
+        if len(pieces) == 1:
+            return ()
         stiffness = [section_stiffness(self.stiffness_law, piece.section, piece.material, self.dim) for piece in pieces]
         if self.kind_of_element.is_cable:
             stiffness = [np.delete(S, 1) for S in stiffness]  # EI

@@ -252,6 +252,9 @@ def test_files_and_resuming_keep_every_bit(tmp_path):
     scene = tendon(temperature=-20.0)
     run = check_file_and_resume(scene, tmp_path, 20, duration=0.2, output_step=0.01, tol=1e-4)
     assert run["energy.external"][-1] != 0
+    for law in ("structural", "pieces of a beam"):
+        beam = tendon(**BEAMS[law][0])
+        check_file_and_resume(beam, tmp_path, 20, duration=0.02, output_step=1e-3, tol=1e-3)
     warm = fu.Scene(temperature=fu.Harmonic(amplitude=20, frequency=0.1))
     warm.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=2, element="cable12", section=fu.Circle(radius=0.01),
                material=fu.Material(**MATERIAL))
