@@ -2566,16 +2566,18 @@ void drag_wet_column(const fu_real *u, const fu_real *delta, fu_real *e, fu_real
 }
 #endif
 
-#ifndef FU_BLOCK
-/* elevation of the surface by a wave (Airy 1845; Dean & Dalrymple 1991); 4 add, 11 mul, 1 cos, 1 sin */
-void drag_wave_elevation(const fu_real *place, fu_real time, const fu_real *k, const fu_real *wave, fu_real *eta, fu_real *eta_t, fu_real *eta_r)
+/* phase of a wave (Airy 1845; Dean & Dalrymple 1991); 4 add, 4 mul */
+FU_KERNEL void drag_wave_phase(const fu_real *place, fu_real time, const fu_real *k, const fu_real *wave, fu_real *theta)
 {
-    /* phase */
-    const fu_real
-        theta = k[0]*place[0] + k[1]*place[1] + k[2]*place[2] - time*wave[1] + wave[2],
-        cosine = FU_COS(theta),
-        sine = FU_SIN(theta),
-        slope = sine*wave[0];
+    /* outputs */
+    theta[0] = k[0]*place[0] + k[1]*place[1] + k[2]*place[2] - time*wave[1] + wave[2];
+}
+
+/* elevation of the surface by a wave (Airy 1845; Dean & Dalrymple 1991); 7 mul */
+FU_KERNEL void drag_wave_elevation(const fu_real *k, const fu_real *wave, fu_real cosine, fu_real sine, fu_real *eta, fu_real *eta_t, fu_real *eta_r)
+{
+    /* elevation */
+    const fu_real slope = sine*wave[0];
     /* outputs */
     eta[0] = cosine*wave[0];
     eta_t[0] = sine*wave[0]*wave[1];
@@ -2583,11 +2585,9 @@ void drag_wave_elevation(const fu_real *place, fu_real time, const fu_real *k, c
     eta_r[1] = -(k[1]*slope);
     eta_r[2] = -(k[2]*slope);
 }
-#endif
 
-#ifndef FU_BLOCK
 /* height of the velocity by Wheeler's rule (Wheeler 1970); 10 add, 13 mul, 4 div */
-void drag_wave_stretching(fu_real height, fu_real eta, fu_real eta_t, const fu_real *eta_r, const fu_real *up, fu_real inv_depth, fu_real *Z, fu_real *Z_t, fu_real *Z_r)
+FU_KERNEL void drag_wave_stretching(fu_real height, fu_real eta, fu_real eta_t, const fu_real *eta_r, const fu_real *up, fu_real inv_depth, fu_real *Z, fu_real *Z_t, fu_real *Z_r)
 {
     /* height */
     const fu_real
@@ -2601,21 +2601,13 @@ void drag_wave_stretching(fu_real height, fu_real eta, fu_real eta_t, const fu_r
     Z_r[1] = d_eta_stretched*eta_r[1] + d_height_stretched*up[1];
     Z_r[2] = d_eta_stretched*eta_r[2] + d_height_stretched*up[2];
 }
-#endif
 
-#ifndef FU_BLOCK
-/* velocity of the fluid in a wave (Airy 1845; Dean & Dalrymple 1991); 28 add, 76 mul, 3 div, 1 cos, 1 sin, 1 exp */
-void drag_wave_velocity(const fu_real *place, fu_real time, const fu_real *k, const fu_real *wave, const fu_real *up, fu_real Z, fu_real Z_t, const fu_real *Z_r, fu_real *potential, fu_real *U, fu_real *U_t, fu_real *G)
+/* velocity of the fluid in a wave (Airy 1845; Dean & Dalrymple 1991); 24 add, 71 mul, 3 div */
+FU_KERNEL void drag_wave_velocity(const fu_real *k, const fu_real *wave, fu_real cosine, fu_real sine, fu_real grow, const fu_real *up, fu_real Z_t, const fu_real *Z_r, fu_real *potential, fu_real *U, fu_real *U_t, fu_real *G)
 {
-    /* phase */
-    const fu_real
-        theta = k[0]*place[0] + k[1]*place[1] + k[2]*place[2] - time*wave[1] + wave[2],
-        cosine = FU_COS(theta),
-        sine = FU_SIN(theta);
     /* decay with depth */
     fu_real ahead[3];
     const fu_real
-        grow = FU_EXP(Z*wave[3]),
         scale = wave[0]*wave[1]/(-wave[4] + 1.0),
         mirrored = wave[4]/grow,
         inv_k = 1.0/wave[3];
@@ -2634,4 +2626,3 @@ void drag_wave_velocity(const fu_real *place, fu_real time, const fu_real *k, co
     FU_EACH(i, 3, U_t[i] = V_Z[i]*Z_t - V_theta[i]*wave[1];)
     FU_PAIRS(i, j, 3, G[3*i + j] = V_Z[i]*Z_r[j] + V_theta[i]*k[j];)
 }
-#endif

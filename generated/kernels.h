@@ -1228,12 +1228,19 @@ typedef void fu_drag_wet_column_kernel(const fu_real *u, const fu_real *delta, f
 /* u 1, delta 1, e 1, c 1, c_u 1, c_uu 1 */
 fu_drag_wet_column_kernel drag_wet_column, planar_drag_wet_column;
 
-typedef void fu_drag_wave_elevation_kernel(const fu_real *place, fu_real time, const fu_real *k, const fu_real *wave, fu_real *eta, fu_real *eta_t, fu_real *eta_r);
-/* elevation of the surface by a wave: place [m]; time [s]; k [1/m]; wave [m, rad/s, rad, 1/m, 1] -> eta [m]; eta_t
+typedef void fu_drag_wave_phase_kernel(const fu_real *place, fu_real time, const fu_real *k, const fu_real *wave, fu_real *theta);
+/* phase of a wave: place [m]; time [s]; k [1/m]; wave [m, rad/s, rad, 1/m, 1] -> theta [rad] */
+/* place 3, k 3, wave 5, theta 1 */
+fu_drag_wave_phase_kernel drag_wave_phase;
+/* place 2, k 2, wave 5, theta 1 */
+fu_drag_wave_phase_kernel planar_drag_wave_phase;
+
+typedef void fu_drag_wave_elevation_kernel(const fu_real *k, const fu_real *wave, fu_real cosine, fu_real sine, fu_real *eta, fu_real *eta_t, fu_real *eta_r);
+/* elevation of the surface by a wave: k [1/m]; wave [m, rad/s, rad, 1/m, 1]; cosine [1]; sine [1] -> eta [m]; eta_t
  * [m/s]; eta_r [1] */
-/* place 3, k 3, wave 5, eta 1, eta_t 1, eta_r 3 */
+/* k 3, wave 5, eta 1, eta_t 1, eta_r 3 */
 fu_drag_wave_elevation_kernel drag_wave_elevation;
-/* place 2, k 2, wave 5, eta 1, eta_t 1, eta_r 2 */
+/* k 2, wave 5, eta 1, eta_t 1, eta_r 2 */
 fu_drag_wave_elevation_kernel planar_drag_wave_elevation;
 
 typedef void fu_drag_wave_stretching_kernel(fu_real height, fu_real eta, fu_real eta_t, const fu_real *eta_r, const fu_real *up, fu_real inv_depth, fu_real *Z, fu_real *Z_t, fu_real *Z_r);
@@ -1244,12 +1251,12 @@ fu_drag_wave_stretching_kernel drag_wave_stretching;
 /* eta_r 2, up 2, Z 1, Z_t 1, Z_r 2 */
 fu_drag_wave_stretching_kernel planar_drag_wave_stretching;
 
-typedef void fu_drag_wave_velocity_kernel(const fu_real *place, fu_real time, const fu_real *k, const fu_real *wave, const fu_real *up, fu_real Z, fu_real Z_t, const fu_real *Z_r, fu_real *potential, fu_real *U, fu_real *U_t, fu_real *G);
-/* velocity of the fluid in a wave: place [m]; time [s]; k [1/m]; wave [m, rad/s, rad, 1/m, 1]; up [1]; Z [m]; Z_t
- * [m/s]; Z_r [1] -> potential [m^2/s]; U [m/s]; U_t [m/s^2]; G [1/s] */
-/* place 3, k 3, wave 5, up 3, Z_r 3, potential 1, U 3, U_t 3, G 3x3 */
+typedef void fu_drag_wave_velocity_kernel(const fu_real *k, const fu_real *wave, fu_real cosine, fu_real sine, fu_real grow, const fu_real *up, fu_real Z_t, const fu_real *Z_r, fu_real *potential, fu_real *U, fu_real *U_t, fu_real *G);
+/* velocity of the fluid in a wave: k [1/m]; wave [m, rad/s, rad, 1/m, 1]; cosine [1]; sine [1]; grow [1]; up [1];
+ * Z_t [m/s]; Z_r [1] -> potential [m^2/s]; U [m/s]; U_t [m/s^2]; G [1/s] */
+/* k 3, wave 5, up 3, Z_r 3, potential 1, U 3, U_t 3, G 3x3 */
 fu_drag_wave_velocity_kernel drag_wave_velocity;
-/* place 2, k 2, wave 5, up 2, Z_r 2, potential 1, U 2, U_t 2, G 2x2 */
+/* k 2, wave 5, up 2, Z_r 2, potential 1, U 2, U_t 2, G 2x2 */
 fu_drag_wave_velocity_kernel planar_drag_wave_velocity;
 
 typedef void fu_frame_axes_kernel(const fu_real *a, const fu_real *b, fu_real *A, fu_real *T);
@@ -2577,6 +2584,7 @@ typedef struct {
     fu_drag_wet_sphere_kernel *wet_sphere;
     fu_drag_wet_section_kernel *wet_section;
     fu_drag_wet_column_kernel *wet_column;
+    fu_drag_wave_phase_kernel *wave_phase;
     fu_drag_wave_elevation_kernel *wave_elevation;
     fu_drag_wave_stretching_kernel *wave_stretching;
     fu_drag_wave_velocity_kernel *wave_velocity;

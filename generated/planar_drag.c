@@ -1262,27 +1262,27 @@ void planar_drag_wet_column(const fu_real *u, const fu_real *delta, fu_real *e, 
 }
 #endif
 
-#ifndef FU_BLOCK
-/* elevation of the surface by a wave (Airy 1845; Dean & Dalrymple 1991); 3 add, 9 mul, 1 cos, 1 sin */
-void planar_drag_wave_elevation(const fu_real *place, fu_real time, const fu_real *k, const fu_real *wave, fu_real *eta, fu_real *eta_t, fu_real *eta_r)
+/* phase of a wave (Airy 1845; Dean & Dalrymple 1991); 3 add, 3 mul */
+FU_KERNEL void planar_drag_wave_phase(const fu_real *place, fu_real time, const fu_real *k, const fu_real *wave, fu_real *theta)
 {
-    /* phase */
-    const fu_real
-        theta = k[0]*place[0] + k[1]*place[1] - time*wave[1] + wave[2],
-        cosine = FU_COS(theta),
-        sine = FU_SIN(theta),
-        slope = sine*wave[0];
+    /* outputs */
+    theta[0] = k[0]*place[0] + k[1]*place[1] - time*wave[1] + wave[2];
+}
+
+/* elevation of the surface by a wave (Airy 1845; Dean & Dalrymple 1991); 6 mul */
+FU_KERNEL void planar_drag_wave_elevation(const fu_real *k, const fu_real *wave, fu_real cosine, fu_real sine, fu_real *eta, fu_real *eta_t, fu_real *eta_r)
+{
+    /* elevation */
+    const fu_real slope = sine*wave[0];
     /* outputs */
     eta[0] = cosine*wave[0];
     eta_t[0] = sine*wave[0]*wave[1];
     eta_r[0] = -(k[0]*slope);
     eta_r[1] = -(k[1]*slope);
 }
-#endif
 
-#ifndef FU_BLOCK
 /* height of the velocity by Wheeler's rule (Wheeler 1970); 9 add, 11 mul, 4 div */
-void planar_drag_wave_stretching(fu_real height, fu_real eta, fu_real eta_t, const fu_real *eta_r, const fu_real *up, fu_real inv_depth, fu_real *Z, fu_real *Z_t, fu_real *Z_r)
+FU_KERNEL void planar_drag_wave_stretching(fu_real height, fu_real eta, fu_real eta_t, const fu_real *eta_r, const fu_real *up, fu_real inv_depth, fu_real *Z, fu_real *Z_t, fu_real *Z_r)
 {
     /* height */
     const fu_real
@@ -1295,44 +1295,28 @@ void planar_drag_wave_stretching(fu_real height, fu_real eta, fu_real eta_t, con
     Z_r[0] = d_eta_stretched*eta_r[0] + d_height_stretched*up[0];
     Z_r[1] = d_eta_stretched*eta_r[1] + d_height_stretched*up[1];
 }
-#endif
 
-#ifndef FU_BLOCK
-/* velocity of the fluid in a wave (Airy 1845; Dean & Dalrymple 1991); 18 add, 49 mul, 3 div, 1 cos, 1 sin, 1 exp */
-void planar_drag_wave_velocity(const fu_real *place, fu_real time, const fu_real *k, const fu_real *wave, const fu_real *up, fu_real Z, fu_real Z_t, const fu_real *Z_r, fu_real *potential, fu_real *U, fu_real *U_t, fu_real *G)
+/* velocity of the fluid in a wave (Airy 1845; Dean & Dalrymple 1991); 15 add, 45 mul, 3 div */
+FU_KERNEL void planar_drag_wave_velocity(const fu_real *k, const fu_real *wave, fu_real cosine, fu_real sine, fu_real grow, const fu_real *up, fu_real Z_t, const fu_real *Z_r, fu_real *potential, fu_real *U, fu_real *U_t, fu_real *G)
 {
-    /* phase */
-    const fu_real
-        theta = k[0]*place[0] + k[1]*place[1] - time*wave[1] + wave[2],
-        cosine = FU_COS(theta),
-        sine = FU_SIN(theta);
     /* decay with depth */
+    fu_real ahead[2];
     const fu_real
-        grow = FU_EXP(Z*wave[3]),
         scale = wave[0]*wave[1]/(-wave[4] + 1.0),
         mirrored = wave[4]/grow,
-        inv_k = 1.0/wave[3],
-        ahead_x = inv_k*k[0],
-        ahead_y = inv_k*k[1],
+        inv_k = 1.0/wave[3];
+    FU_EACH(i, 2, ahead[i] = inv_k*k[i];)
+    const fu_real
         C = scale*(grow + mirrored),
         S = scale*(grow - mirrored);
     /* velocity, by phase and height */
-    const fu_real
-        V_x = C*ahead_x*cosine + S*sine*up[0],
-        V_y = C*ahead_y*cosine + S*sine*up[1],
-        V_theta_x = -C*ahead_x*sine + S*cosine*up[0],
-        V_theta_y = -C*ahead_y*sine + S*cosine*up[1],
-        V_Z_x = wave[3]*(C*sine*up[0] + S*ahead_x*cosine),
-        V_Z_y = wave[3]*(C*sine*up[1] + S*ahead_y*cosine);
+    fu_real V[2], V_theta[2], V_Z[2];
+    FU_EACH(i, 2, V[i] = C*ahead[i]*cosine + S*sine*up[i];)
+    FU_EACH(i, 2, V_theta[i] = -C*ahead[i]*sine + S*cosine*up[i];)
+    FU_EACH(i, 2, V_Z[i] = wave[3]*(C*sine*up[i] + S*ahead[i]*cosine);)
     /* outputs */
     potential[0] = C*inv_k*sine;
-    U[0] = V_x;
-    U[1] = V_y;
-    U_t[0] = V_Z_x*Z_t - V_theta_x*wave[1];
-    U_t[1] = V_Z_y*Z_t - V_theta_y*wave[1];
-    G[0] = V_Z_x*Z_r[0] + V_theta_x*k[0];
-    G[1] = V_Z_x*Z_r[1] + V_theta_x*k[1];
-    G[2] = V_Z_y*Z_r[0] + V_theta_y*k[0];
-    G[3] = V_Z_y*Z_r[1] + V_theta_y*k[1];
+    FU_EACH(i, 2, U[i] = V[i];)
+    FU_EACH(i, 2, U_t[i] = V_Z[i]*Z_t - V_theta[i]*wave[1];)
+    FU_PAIRS(i, j, 2, G[2*i + j] = V_Z[i]*Z_r[j] + V_theta[i]*k[j];)
 }
-#endif

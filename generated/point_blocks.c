@@ -53,6 +53,18 @@ FU_AT_POINTS(drag_morison_of_cable,
 FU_AT_POINTS(drag_morison_of_cable_tangent,
     (const fu_points *t, const fu_points *t_rate, const fu_points *m, const fu_points *displaced, const fu_points *v, const fu_points *a, const fu_points *U, const fu_points *U_rate, const fu_points *G, const fu_points *wet, const fu_points *up, fu_points *f_t, fu_points *f_t_rate, fu_points *f_r, fu_points *f_v, fu_points *g_t, fu_points *g_r, fu_points *g_v),
     (t, t_rate, m, *displaced, v, a, U, U_rate, G, wet, up, f_t, f_t_rate, f_r, f_v, g_t, g_r, g_v))
+FU_AT_POINTS(drag_wave_phase,
+    (const fu_points *place, const fu_points *time, const fu_points *k, const fu_points *wave, fu_points *theta),
+    (place, *time, k, wave, theta))
+FU_AT_POINTS(drag_wave_elevation,
+    (const fu_points *k, const fu_points *wave, const fu_points *cosine, const fu_points *sine, fu_points *eta, fu_points *eta_t, fu_points *eta_r),
+    (k, wave, *cosine, *sine, eta, eta_t, eta_r))
+FU_AT_POINTS(drag_wave_stretching,
+    (const fu_points *height, const fu_points *eta, const fu_points *eta_t, const fu_points *eta_r, const fu_points *up, const fu_points *inv_depth, fu_points *Z, fu_points *Z_t, fu_points *Z_r),
+    (*height, *eta, *eta_t, eta_r, up, *inv_depth, Z, Z_t, Z_r))
+FU_AT_POINTS(drag_wave_velocity,
+    (const fu_points *k, const fu_points *wave, const fu_points *cosine, const fu_points *sine, const fu_points *grow, const fu_points *up, const fu_points *Z_t, const fu_points *Z_r, fu_points *potential, fu_points *U, fu_points *U_t, fu_points *G),
+    (k, wave, *cosine, *sine, *grow, up, *Z_t, Z_r, potential, U, U_t, G))
 FU_AT_POINTS(planar_drag_along_cable,
     (const fu_points *t, const fu_points *w, const fu_points *c, fu_points *f, fu_points *f_t, fu_points *f_w),
     (t, w, c, f, f_t, f_w))
@@ -74,15 +86,27 @@ FU_AT_POINTS(planar_drag_morison_of_cable,
 FU_AT_POINTS(planar_drag_morison_of_cable_tangent,
     (const fu_points *t, const fu_points *t_rate, const fu_points *m, const fu_points *displaced, const fu_points *v, const fu_points *a, const fu_points *U, const fu_points *U_rate, const fu_points *G, const fu_points *wet, const fu_points *up, fu_points *f_t, fu_points *f_t_rate, fu_points *f_r, fu_points *f_v, fu_points *g_t, fu_points *g_r, fu_points *g_v),
     (t, t_rate, m, *displaced, v, a, U, U_rate, G, wet, up, f_t, f_t_rate, f_r, f_v, g_t, g_r, g_v))
+FU_AT_POINTS(planar_drag_wave_phase,
+    (const fu_points *place, const fu_points *time, const fu_points *k, const fu_points *wave, fu_points *theta),
+    (place, *time, k, wave, theta))
+FU_AT_POINTS(planar_drag_wave_elevation,
+    (const fu_points *k, const fu_points *wave, const fu_points *cosine, const fu_points *sine, fu_points *eta, fu_points *eta_t, fu_points *eta_r),
+    (k, wave, *cosine, *sine, eta, eta_t, eta_r))
+FU_AT_POINTS(planar_drag_wave_stretching,
+    (const fu_points *height, const fu_points *eta, const fu_points *eta_t, const fu_points *eta_r, const fu_points *up, const fu_points *inv_depth, fu_points *Z, fu_points *Z_t, fu_points *Z_r),
+    (*height, *eta, *eta_t, eta_r, up, *inv_depth, Z, Z_t, Z_r))
+FU_AT_POINTS(planar_drag_wave_velocity,
+    (const fu_points *k, const fu_points *wave, const fu_points *cosine, const fu_points *sine, const fu_points *grow, const fu_points *up, const fu_points *Z_t, const fu_points *Z_r, fu_points *potential, fu_points *U, fu_points *U_t, fu_points *G),
+    (k, wave, *cosine, *sine, *grow, up, *Z_t, Z_r, potential, U, U_t, G))
 
 static const fu_drag_blocks drag_blocks[2][2] = {
     {
-     {"drag", plain_drag_along_cable, plain_drag_force_along_cable, plain_drag_lift_along_cable, plain_drag_on_section, plain_drag_inertia_of_cable, plain_drag_inertia_of_cable_tangent, plain_drag_morison_of_cable, plain_drag_morison_of_cable_tangent, plain_drag_impulse_of_cable},
-     {"planar_drag", plain_planar_drag_along_cable, plain_planar_drag_force_along_cable, 0, 0, plain_planar_drag_inertia_of_cable, plain_planar_drag_inertia_of_cable_tangent, plain_planar_drag_morison_of_cable, plain_planar_drag_morison_of_cable_tangent, plain_planar_drag_impulse_of_cable},
+     {"drag", plain_drag_along_cable, plain_drag_force_along_cable, plain_drag_lift_along_cable, plain_drag_on_section, plain_drag_inertia_of_cable, plain_drag_inertia_of_cable_tangent, plain_drag_morison_of_cable, plain_drag_morison_of_cable_tangent, plain_drag_impulse_of_cable, plain_drag_wave_phase, plain_drag_wave_elevation, plain_drag_wave_stretching, plain_drag_wave_velocity},
+     {"planar_drag", plain_planar_drag_along_cable, plain_planar_drag_force_along_cable, 0, 0, plain_planar_drag_inertia_of_cable, plain_planar_drag_inertia_of_cable_tangent, plain_planar_drag_morison_of_cable, plain_planar_drag_morison_of_cable_tangent, plain_planar_drag_impulse_of_cable, plain_planar_drag_wave_phase, plain_planar_drag_wave_elevation, plain_planar_drag_wave_stretching, plain_planar_drag_wave_velocity},
     },
     {
-     {"drag", avx2_drag_along_cable, avx2_drag_force_along_cable, avx2_drag_lift_along_cable, avx2_drag_on_section, avx2_drag_inertia_of_cable, avx2_drag_inertia_of_cable_tangent, avx2_drag_morison_of_cable, avx2_drag_morison_of_cable_tangent, avx2_drag_impulse_of_cable},
-     {"planar_drag", avx2_planar_drag_along_cable, avx2_planar_drag_force_along_cable, 0, 0, avx2_planar_drag_inertia_of_cable, avx2_planar_drag_inertia_of_cable_tangent, avx2_planar_drag_morison_of_cable, avx2_planar_drag_morison_of_cable_tangent, avx2_planar_drag_impulse_of_cable},
+     {"drag", avx2_drag_along_cable, avx2_drag_force_along_cable, avx2_drag_lift_along_cable, avx2_drag_on_section, avx2_drag_inertia_of_cable, avx2_drag_inertia_of_cable_tangent, avx2_drag_morison_of_cable, avx2_drag_morison_of_cable_tangent, avx2_drag_impulse_of_cable, avx2_drag_wave_phase, avx2_drag_wave_elevation, avx2_drag_wave_stretching, avx2_drag_wave_velocity},
+     {"planar_drag", avx2_planar_drag_along_cable, avx2_planar_drag_force_along_cable, 0, 0, avx2_planar_drag_inertia_of_cable, avx2_planar_drag_inertia_of_cable_tangent, avx2_planar_drag_morison_of_cable, avx2_planar_drag_morison_of_cable_tangent, avx2_planar_drag_impulse_of_cable, avx2_planar_drag_wave_phase, avx2_planar_drag_wave_elevation, avx2_planar_drag_wave_stretching, avx2_planar_drag_wave_velocity},
     },
 };
 

@@ -22,6 +22,10 @@ typedef struct {
     void (*morison_of_cable)(const fu_points *t, const fu_points *t_rate, const fu_points *m, const fu_points *displaced, const fu_points *v, const fu_points *a, const fu_points *U, const fu_points *U_rate, const fu_points *G, const fu_points *wet, const fu_points *up, fu_points *f, fu_points *g, fu_points *power);
     void (*morison_of_cable_tangent)(const fu_points *t, const fu_points *t_rate, const fu_points *m, const fu_points *displaced, const fu_points *v, const fu_points *a, const fu_points *U, const fu_points *U_rate, const fu_points *G, const fu_points *wet, const fu_points *up, fu_points *f_t, fu_points *f_t_rate, fu_points *f_r, fu_points *f_v, fu_points *g_t, fu_points *g_r, fu_points *g_v);
     void (*impulse_of_cable)(const fu_points *t, const fu_points *w, const fu_points *m, fu_points *p, fu_points *M);
+    void (*wave_phase)(const fu_points *place, const fu_points *time, const fu_points *k, const fu_points *wave, fu_points *theta);
+    void (*wave_elevation)(const fu_points *k, const fu_points *wave, const fu_points *cosine, const fu_points *sine, fu_points *eta, fu_points *eta_t, fu_points *eta_r);
+    void (*wave_stretching)(const fu_points *height, const fu_points *eta, const fu_points *eta_t, const fu_points *eta_r, const fu_points *up, const fu_points *inv_depth, fu_points *Z, fu_points *Z_t, fu_points *Z_r);
+    void (*wave_velocity)(const fu_points *k, const fu_points *wave, const fu_points *cosine, const fu_points *sine, const fu_points *grow, const fu_points *up, const fu_points *Z_t, const fu_points *Z_r, fu_points *potential, fu_points *U, fu_points *U_t, fu_points *G);
 } fu_drag_blocks;
 
 /* of a family by name; null where there is none */

@@ -238,15 +238,15 @@ static const fu_drag_kernels drags[] = {
      drag_inertia_of_span, drag_inertia_of_span_tangent, drag_impulse_of_point, drag_inertia_of_point,
      drag_inertia_of_point_tangent, drag_inertia_of_point_step, drag_morison_of_cable, drag_morison_of_cable_tangent,
      drag_morison_of_point, drag_morison_of_point_tangent, drag_wet_sphere, drag_wet_section, drag_wet_column,
-     drag_wave_elevation, drag_wave_stretching, drag_wave_velocity},
+     drag_wave_phase, drag_wave_elevation, drag_wave_stretching, drag_wave_velocity},
     {"planar_drag", 2, planar_drag_along_cable, planar_drag_force_along_cable, 0, 0, planar_drag_on_point,
      planar_drag_on_foil, planar_drag_impulse_of_cable, planar_drag_inertia_of_cable,
      planar_drag_inertia_of_cable_tangent, planar_drag_inertia_step, planar_drag_inertia_of_span,
      planar_drag_inertia_of_span_tangent, planar_drag_impulse_of_point, planar_drag_inertia_of_point,
      planar_drag_inertia_of_point_tangent, planar_drag_inertia_of_point_step, planar_drag_morison_of_cable,
      planar_drag_morison_of_cable_tangent, planar_drag_morison_of_point, planar_drag_morison_of_point_tangent,
-     planar_drag_wet_sphere, planar_drag_wet_section, planar_drag_wet_column, planar_drag_wave_elevation,
-     planar_drag_wave_stretching, planar_drag_wave_velocity},
+     planar_drag_wet_sphere, planar_drag_wet_section, planar_drag_wet_column, planar_drag_wave_phase,
+     planar_drag_wave_elevation, planar_drag_wave_stretching, planar_drag_wave_velocity},
 };
 
 static const fu_frame_kernels frames[] = {
@@ -440,9 +440,9 @@ static const fu_working_curve_kernels working_curves[] = {
 #define FU_ARGUMENTS_vvvvvvv_4 a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1], out[2], out[3]
 #define FU_ARGUMENTS_v_4 a[0], out[0], out[1], out[2], out[3]
 #define FU_ARGUMENTS_vv_4 a[0], a[1], out[0], out[1], out[2], out[3]
-#define FU_ARGUMENTS_vsvv_3 a[0], *a[1], a[2], a[3], out[0], out[1], out[2]
+#define FU_ARGUMENTS_vvss_3 a[0], a[1], *a[2], *a[3], out[0], out[1], out[2]
 #define FU_ARGUMENTS_sssvvs_3 *a[0], *a[1], *a[2], a[3], a[4], *a[5], out[0], out[1], out[2]
-#define FU_ARGUMENTS_vsvvvssv_4 a[0], *a[1], a[2], a[3], a[4], *a[5], *a[6], a[7], out[0], out[1], out[2], out[3]
+#define FU_ARGUMENTS_vvsssvsv_4 a[0], a[1], *a[2], *a[3], *a[4], a[5], *a[6], a[7], out[0], out[1], out[2], out[3]
 #define FU_ARGUMENTS_vvvvvv_2 a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]
 #define FU_ARGUMENTS_vvvvvvvv_2 a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]
 #define FU_ARGUMENTS_vsvv_2 a[0], *a[1], a[2], a[3], out[0], out[1]
@@ -1006,9 +1006,10 @@ static const fu_working_curve_kernels working_curves[] = {
     X(drag_wet_sphere, v_4) \
     X(drag_wet_section, v_4) \
     X(drag_wet_column, vv_4) \
-    X(drag_wave_elevation, vsvv_3) \
+    X(drag_wave_phase, vsvv_1) \
+    X(drag_wave_elevation, vvss_3) \
     X(drag_wave_stretching, sssvvs_3) \
-    X(drag_wave_velocity, vsvvvssv_4) \
+    X(drag_wave_velocity, vvsssvsv_4) \
     X(planar_drag_along_cable, vvv_3) \
     X(planar_drag_force_along_cable, vvv_1) \
     X(planar_drag_on_point, vv_2) \
@@ -1030,9 +1031,10 @@ static const fu_working_curve_kernels working_curves[] = {
     X(planar_drag_wet_sphere, v_4) \
     X(planar_drag_wet_section, v_4) \
     X(planar_drag_wet_column, vv_4) \
-    X(planar_drag_wave_elevation, vsvv_3) \
+    X(planar_drag_wave_phase, vsvv_1) \
+    X(planar_drag_wave_elevation, vvss_3) \
     X(planar_drag_wave_stretching, sssvvs_3) \
-    X(planar_drag_wave_velocity, vsvvvssv_4) \
+    X(planar_drag_wave_velocity, vvsssvsv_4) \
     X(frame_axes, vv_2) \
     X(frame_motion, vvvvvv_2) \
     X(frame_moment, vvv_2) \

@@ -40,7 +40,7 @@ MIN_OPERATIONS_PER_OUTPUT = 6
 """Smallest kernels in blocks.c, per output number: below, the sorting of numbers by element costs the gain."""
 POINT_BLOCKS = {"drag": ("along_cable", "force_along_cable", "lift_along_cable", "on_section", "inertia_of_cable",
                          "inertia_of_cable_tangent", "morison_of_cable", "morison_of_cable_tangent",
-                         "impulse_of_cable")}
+                         "impulse_of_cable", "wave_phase", "wave_elevation", "wave_stretching", "wave_velocity")}
 """Kernels by role that are also compiled for several points of quadrature at once (point_blocks.c)."""
 
 

@@ -21,23 +21,32 @@ SOURCE = "Airy 1845; Dean & Dalrymple 1991"
 
 def build(name: str, dim: int) -> list[Program]:
     """Return the kernels in space or in the plane, of the family `name`."""
-    return [elevation(name, dim), stretching(name, dim), velocity(name, dim)]
+    return [phase(name, dim), elevation(name, dim), stretching(name, dim), velocity(name, dim)]
 
 
-def _phase(p: Program, dim: int) -> tuple[sp.Expr, ...]:
-    """Return place, wave vector, numbers of the wave, and cosine and sine of its phase."""
+def _wave(p: Program, dim: int) -> tuple[sp.Expr, ...]:
+    """Return wave vector, numbers of the wave, and cosine and sine of its phase."""
+    k = p.input("k", dim, "1/m", "vector of the wave, along its direction")
+    wave = p.input("wave", 5, "m, rad/s, rad, 1/m, 1", "a, omega, phi, size of k, q")
+    return k, wave, p.input("cosine", (), "1", "cos theta"), p.input("sine", (), "1", "sin theta")
+
+
+def phase(name: str, dim: int) -> Program:
+    """Return the kernel of the phase of a wave."""
+    p = Program(f"{name}_wave_phase", "phase of a wave", SOURCE)
     place, time = p.input("place", dim, "m", "place"), p.input("time", (), "s", "time")
     k = p.input("k", dim, "1/m", "vector of the wave, along its direction")
     wave = p.input("wave", 5, "m, rad/s, rad, 1/m, 1", "a, omega, phi, size of k, q")
     p.stage("phase")
-    theta = p.define("theta", k.dot(place) - wave[1] * time + wave[2])
-    return place, time, k, wave, p.define("cosine", sp.cos(theta)), p.define("sine", sp.sin(theta))
+    p.output("theta", k.dot(place) - wave[1] * time + wave[2], "rad", "phase")
+    return p
 
 
 def elevation(name: str, dim: int) -> Program:
-    """Return the kernel of the elevation of a wave."""
+    """Return the kernel of the elevation of a wave by its phase."""
     p = Program(f"{name}_wave_elevation", "elevation of the surface by a wave", SOURCE)
-    _, _, k, (a, omega, *_), cosine, sine = _phase(p, dim)
+    k, (a, omega, *_), cosine, sine = _wave(p, dim)
+    p.stage("elevation")
     p.output("eta", a * cosine, "m", "elevation above the still level")
     p.output("eta_t", a * omega * sine, "m/s", "its rate at a fixed place")
     p.output("eta_r", -p.define("slope", a * sine) * k, "1", "its derivatives by the place")
@@ -62,15 +71,14 @@ def stretching(name: str, dim: int) -> Program:
 
 
 def velocity(name: str, dim: int) -> Program:
-    """Return the kernel of the velocity of the fluid in a wave, with its derivatives."""
+    """Return the kernel of the velocity of the fluid in a wave by its phase, with its derivatives."""
     p = Program(f"{name}_wave_velocity", "velocity of the fluid in a wave", SOURCE)
-    _, _, k, (a, omega, _, size, q), cosine, sine = _phase(p, dim)
+    k, (a, omega, _, size, q), cosine, sine = _wave(p, dim)
+    grow = p.input("grow", (), "1", "e^{kZ} at the height Z above the still level at which the velocity is taken")
     up = p.input("up", dim, "1", "vertical")
-    Z = p.input("Z", (), "m", "height above the still level at which the velocity is taken")
-    Z_t = p.input("Z_t", (), "m/s", "its rate at a fixed place")
+    Z_t = p.input("Z_t", (), "m/s", "rate of Z at a fixed place")
     Z_r = p.input("Z_r", dim, "1", "its derivatives by the place")
     p.stage("decay with depth")
-    grow = p.define("grow", sp.exp(size * Z))
     scale, mirrored = p.define("scale", a * omega / (1 - q)), p.define("mirrored", q / grow)
     inverse = p.define("inv_k", 1 / size)
     ahead = p.vector("ahead", inverse * k)

@@ -23,7 +23,8 @@ THEORY: dict[str, dict[str, str]] = {
     "bodies/modal": {}, "couplings/joint": {}, "couplings/joint_kind": {}, "couplings/spring": {},
     "algebra/tangent_frame": {}, "couplings/frame": {}, "couplings/slide": {}, "couplings/resistance": {},
     "couplings/branch": {}, "couplings/working_curve": {}, "couplings/drag": {}, "couplings/added_mass": {},
-    "couplings/wetness": {}, "couplings/surface": {}, "couplings/hard_contact": {}, "couplings/span": {},
+    "couplings/wetness": {}, "couplings/waves": {}, "couplings/surface": {}, "couplings/hard_contact": {},
+    "couplings/span": {},
     "couplings/sheave": {}, "couplings/tangent_point": {}, "couplings/drum": {}, "couplings/rope_point": {},
     "couplings/taut_rope": {}, "couplings/taut_part": {}, "couplings/crossing": {}, "theory/catenary": {}}
 """The chapters of the theory in order, with families that differ from `MAIN`. Those of other roles follow."""

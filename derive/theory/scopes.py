@@ -397,7 +397,18 @@ def drag_scope(name: str) -> Scope:
                                     Symbol(r"\mathbf{s}", "s", column), Symbol(r"\mathbf{A}", "A", matrix),
                                     Symbol(r"\mathbf{C}", "C", matrix),
                                     Symbol(r"\boldsymbol{\omega}", "omega", column),
-                                    Symbol("u", "u", entry(0)), Symbol(r"\delta", "delta", entry(0))))
+                                    Symbol("u", "u", entry(0)), Symbol(r"\delta", "delta", entry(0)),
+                                    *_wave_symbols()))
+
+
+def _wave_symbols() -> tuple[Symbol, ...]:
+    """Return the symbols of a wave at a point."""
+    return (Symbol(r"\mathbf{x}", "place", column), Symbol(r"\tau", "time", number), Symbol(r"\mathbf{k}", "k", column),
+            *(Symbol(s, "wave", entry(k)) for k, s in enumerate(("a", r"\omega", r"\varphi", "k", "q"))),
+            Symbol(r"\gamma", "cosine", number), Symbol(r"\sigma", "sine", number), Symbol("E", "grow", number),
+            Symbol("z", "height", number), Symbol(r"\eta", "eta", number), Symbol(r"\dot{\eta}", "eta_t", number),
+            Symbol(r"\boldsymbol{\eta}_{r}", "eta_r", column), Symbol("D", "inv_depth", number),
+            Symbol(r"\dot{Z}", "Z_t", number), Symbol(r"\mathbf{Z}_{r}", "Z_r", column))
 
 
 def crossing_scope(name: str) -> Scope:

@@ -30,7 +30,8 @@ class Numbers:
         self.programs = {p.name.removeprefix(f"{family}_"): p for p in programs}
         self._call, self._convert = call, convert
         self.eps = eps
-        self.sqrt, self.sin, self.cos = functions.sqrt, functions.sin, functions.cos
+        self.sqrt, self.exp = functions.sqrt, functions.exp
+        self.sin, self.cos = functions.sin, functions.cos
 
     def state(self, values: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
         """Return a state of floats in this kind of number."""

@@ -269,7 +269,8 @@ def _waves(fluid: Fluid, scene: SceneData, up: np.ndarray) -> dict[str, Any]:
     numbers = [[wave.amplitude, wave.frequency, wave.phase, *each] for wave, *each in zip(waves, k, decay, strict=True)]
     return {"n_waves": len(waves), "move_fluid": bool(waves) and own is fluid,
             "wave_vectors": vectors[:, : len(up)], "wave_numbers": np.array(numbers).reshape(-1, WAVE_NUMBERS),
-            "inv_depth": 0.0 if own.depth is None else 1 / own.depth}
+            "inv_depth": 0.0 if own.depth is None else 1 / own.depth,
+            "max_elevation": sum(wave.amplitude for wave in waves)}
 
 
 def _table(fluid: Fluid, dim: int) -> tuple[int, dict[str, Any]]:

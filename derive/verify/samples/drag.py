@@ -20,9 +20,8 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
     axes, half = np.linalg.qr(random.normal(size=(dim, dim)))[0], random.normal(size=(dim, dim))
     sampled = moving | {"A": axes, "G": random.normal(size=(dim, dim)), "displaced": np.float64(1.7),
                      "wet": np.array([0.6, -0.9, 0.7, 0.5]),
-                     "place": random.normal(size=dim), "time": np.float64(0.3), "k": random.normal(size=dim),
-                     "wave": np.array([0.8, 1.3, 0.4, 0.9, 0.2]), "Z": np.float64(-0.6), "Z_t": np.float64(0.7),
-                     "Z_r": random.normal(size=dim), "height": np.float64(-0.7), "eta": np.float64(0.3),
+                     **_wave(random, dim), "Z_t": np.float64(0.7), "Z_r": random.normal(size=dim),
+                     "height": np.float64(-0.7), "eta": np.float64(0.3),
                      "eta_t": np.float64(0.4), "eta_r": random.normal(size=dim), "inv_depth": np.float64(0.2),
                      "omega": random.normal(size=3 if dim == 3 else 1), "C": half @ half.T, "m": np.array([1.3, 0.2]),
                      "u": np.array([-0.97]), "delta": np.array([0.05]), "phi": np.array([0.4]),
@@ -34,6 +33,15 @@ def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) 
     one, across = np.eye(dim), swung_axes(theta / 2, np.eye(dim))
     return sampled | {"theta": theta, "A_next": np.linalg.solve(one - across, (one + across) @ axes),
                       "turning": random.normal(size=dim), "y": random.normal(size=dim), "growth": np.float64(0.4)}
+
+
+def _wave(random: np.random.Generator, dim: int) -> State:
+    """Return a wave with its phase at a place and time, and its decay to a height."""
+    place, time, k = random.normal(size=dim), np.float64(0.3), random.normal(size=dim)
+    wave, Z = np.array([0.8, 1.3, 0.4, 0.9, 0.2]), np.float64(-0.6)
+    theta = k @ place - wave[1] * time + wave[2]
+    return {"place": place, "time": time, "k": k, "wave": wave, "Z": Z, "cosine": np.cos(theta), "sine": np.sin(theta),
+            "grow": np.exp(wave[3] * Z)}
 
 
 def _section(random: np.random.Generator) -> State:

@@ -30,29 +30,29 @@ int fu_surface_event_functions(const fu_drag *drag, int first, fu_event_function
     return n;
 }
 
-/* Computes the lowest and the highest position, m: of a cable or a span among its nodes. */
-static void heights_of(const fu_model *model, const fu_drag *drag, const fu_state *state, double *low, double *high)
+/* Returns the lowest (sense 1) or the highest (-1) position above the surface, m: of a cable or a span among its nodes.
+ * Waves are not evaluated at nodes that are farther than they reach. */
+static double extreme_height(const fu_model *model, const fu_drag *drag, const fu_state *state, double sense)
 {
     const int nodes = fu_drag_nodes(drag);
     if (!nodes) {
         fu_attachment_state end;
         fu_attachment_at(model, &drag->attachments[0], state, 0.0, FU_POINT, &end);
-        *low = *high = fu_drag_height(model, drag, state->t, end.p);
-        return;
+        return fu_drag_height(model, drag, state->t, end.p);
     }
-    *low = *high = fu_drag_height(model, drag, state->t, fu_drag_node(model, drag, 0, state->q));
-    for (int k = 1; k < nodes; ++k) {
-        const double height = fu_drag_height(model, drag, state->t, fu_drag_node(model, drag, k, state->q));
-        *low = fmin(*low, height);
-        *high = fmax(*high, height);
+    double found = HUGE_VAL;
+    for (int k = 0; k < nodes; ++k) {
+        const double *r = fu_drag_node(model, drag, k, state->q);
+        const double still = sense * (drag->flow.base + fu_dot(model->dim, drag->flow.up, r));
+        if (still - drag->waves.max_elevation >= found) continue;
+        found = fmin(found, drag->waves.n_waves ? sense * fu_drag_height(model, drag, state->t, r) : still);
     }
+    return sense * found;
 }
 
 double fu_surface_event_value(const fu_model *model, const fu_drag *drag, const fu_state *state, int which)
 {
     const double reach = fu_wet_reach(drag);
-    double low, high;
-    heights_of(model, drag, state, &low, &high);
-    return which % N_SURFACE_FUNCTIONS == 0 ? level_of(drag, which) + reach - low
-                                            : level_of(drag, which) - reach - high;
+    return which % N_SURFACE_FUNCTIONS == 0 ? level_of(drag, which) + reach - extreme_height(model, drag, state, 1.0)
+                                            : level_of(drag, which) - reach - extreme_height(model, drag, state, -1.0);
 }

@@ -5,8 +5,8 @@
  *
  * The kernels give the force on a particle, that on the slope of a cable or the moment on a body, and the external
  * power of the fluid, with T counted as kinetic energy. Those of Morison's equation have another force, with the same
- * M and the same T. M a belongs to the inertia: Newton's matrix and that of eq 38
- * contain M. The matrix neglects second derivatives of U: Newton's method converges without them.
+ * M and the same T. M a belongs to the inertia: Newton's matrix and that of eq 38 contain M. The matrix neglects second
+ * derivatives of U, and the curvature of a surface with waves: Newton's method converges without them.
  */
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
@@ -23,8 +23,8 @@ typedef struct {
 
 static surroundings surroundings_of(const fu_model *model, const fu_drag *drag, double t, const double *r)
 {
-    surroundings out = {.wet = fu_wet_part(model, drag, t, r)};
-    fu_flow_at(model, drag, t, r, &out.flow);
+    surroundings out;
+    fu_fluid_at(model, drag, t, r, &out.flow, &out.wet);
     return out;
 }
 

@@ -28,8 +28,10 @@ static relative_motion motion_in_fluid(const fu_model *model, const fu_drag *dra
                                        const double *v)
 {
     const int dim = model->dim;
-    relative_motion out = {.wet = fu_wet_part(model, drag, t, r).part};
-    fu_flow_at(model, drag, t, r, &out.flow);
+    relative_motion out;
+    fu_wetness wet;
+    fu_fluid_at(model, drag, t, r, &out.flow, &wet);
+    out.wet = wet.part;
     for (int d = 0; d < dim; ++d) {
         out.w[d] = v[d] - out.flow.U[d];
         out.material[d] = out.flow.rate[d] + fu_dot(dim, out.flow.gradient + d * dim, out.flow.U);

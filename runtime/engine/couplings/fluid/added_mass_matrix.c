@@ -14,9 +14,10 @@ static void impulse(const fu_model *model, const fu_drag *drag, double t, const 
                     double p[3], double M[9])
 {
     drag->kernel->impulse_of_point(A, drag->added, at->v, p, M);
-    const double part = fu_wet_part(model, drag, t, at->r).part;
-    for (int i = 0; i < model->dim; ++i) p[i] *= part;
-    for (int i = 0; i < model->dim * model->dim; ++i) M[i] *= part;
+    fu_wetness wet;
+    fu_fluid_at(model, drag, t, at->r, 0, &wet);
+    for (int i = 0; i < model->dim; ++i) p[i] *= wet.part;
+    for (int i = 0; i < model->dim * model->dim; ++i) M[i] *= wet.part;
 }
 
 /* Computes position and velocity of a body's point. */
@@ -152,7 +153,7 @@ double fu_added_mass_kinetic_energy(const fu_model *model, const fu_coupling *co
     fu_drag_place at;
     fu_flow_state flow = {{0.0}, {0.0}, {0.0}};
     place_on_body(model, drag, q, v, &end, &at);
-    if (past_fluid) fu_flow_at(model, drag, t, at.r, &flow);
+    if (past_fluid) fu_fluid_at(model, drag, t, at.r, &flow, 0);
     for (int d = 0; d < model->dim; ++d) at.v[d] -= flow.U[d];
     impulse(model, drag, t, &at, end.A, p, M);
     return 0.5 * fu_dot(model->dim, p, at.v);

@@ -266,6 +266,7 @@ static const fu_field fields[] = {
     WAVES_FIELD(wave_vectors, FU_REALS),
     WAVES_FIELD(wave_numbers, FU_REALS),
     WAVES_FIELD(inv_depth, FU_REAL),
+    WAVES_FIELD(max_elevation, FU_REAL),
     FU_FIELD(fu_drag, cable, FU_INTEGER, 0),
     FU_FIELD(fu_drag, first, FU_INTEGER, 0),
     FU_FIELD(fu_drag, n_elements, FU_INTEGER, 0),

@@ -37,12 +37,14 @@ typedef struct {
 } fu_flow_state;
 
 /* Linear waves on the surface of a fluid: the vectors of n (n x dim), and their numbers as the kernels take them; the
- * reciprocal of the depth, 0 for infinite depth. move_fluid: zero in the fluid above the surface. */
+ * reciprocal of the depth, 0 for infinite depth; the sum of the amplitudes, which no elevation exceeds, m. move_fluid:
+ * zero in the fluid above the surface. */
 #define FU_WAVE_NUMBERS 5
+#define FU_MAX_WAVES 1000 /* runtime/parts/wave.py */
 typedef struct {
     int n_waves, move_fluid;
     const double *wave_vectors, *wave_numbers;
-    double inv_depth;
+    double inv_depth, max_elevation;
 } fu_waves;
 
 /* The elevation of a surface at a place, m, its rate there, and its derivatives by the place. */
@@ -247,20 +249,41 @@ void fu_block_subtract(int dim, const fu_block_shapes *shapes, int n_fields, con
 void fu_block_add_matrix(int dim, const fu_block_shapes *shapes, int n_rows, int n_columns, const fu_points *by,
                          double *K);
 
-/* couplings/fluid/velocity_field.c: the velocity of the fluid; the distance within its table, see there. */
-void fu_flow_at(const fu_model *model, const fu_drag *drag, double t, const double *r, fu_flow_state *out);
+/* couplings/fluid/velocity_field.c: the velocity of the fluid without waves; the distance within its table, see there.
+ */
+void fu_current_at(const fu_model *model, const fu_flow *flow, double t, const double *r, fu_flow_state *out);
 double fu_flow_margin(const fu_model *model, const fu_flow *flow, double t, const double *r);
 
-/* couplings/fluid/waves.c: the elevation at a place; adds the motion of the fluid. */
+/* The elevation at the points of a block, as fu_elevation; cosine and sine of the phase of a wave there. */
+typedef struct {
+    fu_points eta, rate, slope[3];
+} fu_block_elevation;
+typedef struct {
+    fu_points cosine, sine;
+} fu_wave_phase;
+
+/* couplings/fluid/waves.c: the elevation at a place; at the places r of a block, with the phases of the waves (n, null:
+ * none); adds the motion of the fluid there to U, rate and gradient. */
 fu_elevation fu_elevation_at(const fu_model *model, const fu_drag *drag, double t, const double *r);
-void fu_add_waves(const fu_model *model, const fu_drag *drag, double t, const double *r, fu_flow_state *out);
+void fu_block_elevations(const fu_model *model, const fu_drag *drag, double t, const fu_points *r,
+                         fu_wave_phase *phases, fu_block_elevation *out);
+void fu_block_add_waves(const fu_model *model, const fu_drag *drag, const fu_points *r, const fu_block_elevation *at,
+                        const fu_wave_phase *phases, fu_block_fluid *out);
+
+/* couplings/fluid/fluid_at.c: the velocity of the fluid at a point, and the wet part, each of which may be null; of a
+ * fluid with waves at the n points of a block: adds the velocity of the waves, if it moves, and computes the wet part.
+ */
+void fu_fluid_at(const fu_model *model, const fu_drag *drag, double t, const double *r, fu_flow_state *flow,
+                 fu_wetness *wet);
+void fu_block_in_waves(const fu_model *model, const fu_drag *drag, double t, const fu_points *r, int n, int moves,
+                       fu_block_fluid *out);
 
 /* couplings/fluid/wetness.c: the wet part at a height; the height of a point above the elevation, m; the points of
  * quadrature of an element at the coordinates e, on a span without shape functions, and over a step between two
  * coordinates. */
 fu_wetness fu_wet_at_height(const fu_drag *drag, double height);
-/* at a point: */
-fu_wetness fu_wet_part(const fu_model *model, const fu_drag *drag, double t, const double *r);
+/* Returns whether waves may change the wet part at a height above the origin. */
+int fu_near_surface(const fu_drag *drag, double height);
 double fu_wet_reach(const fu_drag *drag); /* largest distance from a surface at which the wet part changes, m */
 double fu_drag_height(const fu_model *model, const fu_drag *drag, double t, const double *r);
 void fu_drag_points_on(const fu_model *model, const fu_drag *drag, double t, int element, const double *e,

@@ -75,24 +75,23 @@ static void scale(int n, double by, double *x)
 }
 
 /* Multiplies the forces of full wetting by the wet part, and computes their derivative by position through it. */
-static void take_wet_part(const fu_model *model, const fu_drag *drag, double t, const fu_drag_place *at,
-                          fu_drag_action *out)
+static void take_wet_part(int dim, const fu_wetness *wet, fu_drag_action *out)
 {
-    const int dim = model->dim;
-    const fu_wetness wet = fu_wet_part(model, drag, t, at->r);
     for (int i = 0; i < dim; ++i)
-        for (int j = 0; j < dim; ++j) out->by_wet[i * dim + j] = (out->f[i] + out->buoyancy[i]) * wet.slope * wet.up[j];
-    scale(3, wet.part, out->f);
-    scale(3, wet.part, out->buoyancy);
-    scale(9, wet.part, out->by_slope);
-    scale(9, wet.part, out->by_w);
-    scale(9, wet.part, out->by_turn);
+        for (int j = 0; j < dim; ++j)
+            out->by_wet[i * dim + j] = (out->f[i] + out->buoyancy[i]) * wet->slope * wet->up[j];
+    scale(3, wet->part, out->f);
+    scale(3, wet->part, out->buoyancy);
+    scale(9, wet->part, out->by_slope);
+    scale(9, wet->part, out->by_w);
+    scale(9, wet->part, out->by_turn);
 }
 
 void fu_drag_act(const fu_model *model, const fu_drag *drag, double t, const fu_drag_place *at, const double *A,
                  fu_drag_action *out)
 {
-    fu_flow_at(model, drag, t, at->r, &out->flow);
+    fu_wetness wet;
+    fu_fluid_at(model, drag, t, at->r, &out->flow, drag->wet == FU_ALL_WET ? 0 : &wet);
     for (int d = 0; d < model->dim; ++d) out->w[d] = out->flow.U[d] - at->v[d];
     if (drag->on.kernel)
         drag->kernel->along_cable(at->r_x, out->w, drag->coefficients, out->f, out->by_slope, out->by_w);
@@ -101,7 +100,7 @@ void fu_drag_act(const fu_model *model, const fu_drag *drag, double t, const fu_
     if (drag->is_foil) add_foil(model->dim, drag, A, out);
     memcpy(out->buoyancy, drag->buoyancy, sizeof out->buoyancy);
     if (drag->wet == FU_ALL_WET) memset(out->by_wet, 0, sizeof out->by_wet);
-    else take_wet_part(model, drag, t, at, out);
+    else take_wet_part(model->dim, &wet, out);
 }
 
 void fu_drag_by_place(int dim, const fu_drag_action *a, double out[9])

@@ -37,20 +37,20 @@ static fu_block_constants constants_of(const fu_model *model, const fu_drag *dra
     return out;
 }
 
-/* Returns whether the velocity of a fluid is the same everywhere. */
+/* Returns whether the velocity of a fluid without its waves is the same everywhere. */
 static int is_uniform(const fu_drag *drag)
 {
-    return !drag->flow.degree && drag->flow.profile == FU_UNIFORM && !drag->waves.move_fluid;
+    return !drag->flow.degree && drag->flow.profile == FU_UNIFORM;
 }
 
-/* Takes the fluid at one point of a block from the p-th on. */
-static void fluid_from(const fu_model *model, const fu_drag *drag, double t, int p, const fu_block_motion *motion,
-                       fu_block_fluid *out)
+/* Takes the velocity of the fluid without waves at one point of a block from the p-th on. */
+static void current_from(const fu_model *model, const fu_drag *drag, double t, int p, const fu_block_motion *motion,
+                         fu_block_fluid *out)
 {
     double r[3];
     fu_flow_state flow;
     fu_block_vector(model->dim, motion->r, p, r);
-    fu_flow_at(model, drag, t, r, &flow);
+    fu_current_at(model, &drag->flow, t, r, &flow);
     for (; p < FU_BLOCK_POINTS; ++p) {
         for (int d = 0; d < model->dim; ++d) {
             out->U[d][p] = flow.U[d];
@@ -64,8 +64,9 @@ static void wet_part_from(const fu_model *model, const fu_drag *drag, double t, 
                           fu_block_fluid *out)
 {
     double r[3];
+    fu_wetness wet;
     fu_block_vector(model->dim, motion->r, p, r);
-    const fu_wetness wet = fu_wet_part(model, drag, t, r);
+    fu_fluid_at(model, drag, t, r, 0, &wet);
     for (; p < FU_BLOCK_POINTS; ++p) {
         out->wet[0][p] = wet.part;
         out->wet[1][p] = wet.slope;
@@ -79,11 +80,12 @@ static void wet_part_from(const fu_model *model, const fu_drag *drag, double t, 
 static void fluid_at(const fu_model *model, const fu_drag *drag, const fu_drag_loop *loop, int is_first,
                      const fu_block_shapes *shapes, const fu_block_motion *motion, fu_block_fluid *out)
 {
-    const int uniform = loop->is_still || is_uniform(drag), all_wet = drag->wet == FU_ALL_WET;
-    if (is_first && loop->is_still) memset(out, 0, sizeof *out);
-    for (int p = 0; p < shapes->n && !loop->is_still && (!uniform || (is_first && p == 0)); ++p)
-        fluid_from(model, drag, loop->t, p, motion, out);
-    for (int p = 0; p < shapes->n && (!all_wet || (is_first && p == 0)); ++p)
+    const int has_waves = drag->waves.n_waves > 0, uniform = is_uniform(drag), all_wet = drag->wet == FU_ALL_WET;
+    if (loop->is_still && (is_first || has_waves)) memset(out, 0, sizeof *out);
+    for (int p = 0; p < shapes->n && !loop->is_still && (!uniform || ((is_first || has_waves) && p == 0)); ++p)
+        current_from(model, drag, loop->t, p, motion, out);
+    if (has_waves) fu_block_in_waves(model, drag, loop->t, motion->r, shapes->n, !loop->is_still, out);
+    for (int p = 0; p < shapes->n && !has_waves && (!all_wet || (is_first && p == 0)); ++p)
         wet_part_from(model, drag, loop->t, p, motion, out);
 }
 

@@ -28,8 +28,7 @@ static moving_point point_of(const fu_model *model, const fu_drag *drag, double 
     moving_point of = {.part = points->at[g].weight / it->l, .share = points->x[g] / it->l};
     drag->on.kernel->motion(it->l, it->e, it->v, it->s_rate, of.share, it->a, it->s_acc, of.at.r, of.at.r_x, of.at.v,
                             of.slope_rate, of.place_rate, of.at.a, &of.growth);
-    of.wet = fu_wet_part(model, drag, t, of.at.r);
-    fu_flow_at(model, drag, t, of.at.r, &of.flow);
+    fu_fluid_at(model, drag, t, of.at.r, &of.flow, &of.wet);
     return of;
 }
 
@@ -103,9 +102,10 @@ static double impulse_at(const fu_model *model, const fu_drag *drag, const fu_sp
     drag->on.kernel->point(it->l, it->e, it->v, it->s_rate, share, at->r, at->r_x, at->v);
     for (int d = 0; U && d < model->dim; ++d) at->v[d] -= U[d];
     drag->kernel->impulse_of_cable(at->r_x, at->v, drag->added, p, M);
-    const double part = fu_wet_part(model, drag, 0.0, at->r).part;
-    for (int d = 0; d < model->dim; ++d) p[d] *= part;
-    for (int i = 0; i < model->dim * model->dim; ++i) M[i] *= part;
+    fu_wetness wet;
+    fu_fluid_at(model, drag, 0.0, at->r, 0, &wet);
+    for (int d = 0; d < model->dim; ++d) p[d] *= wet.part;
+    for (int i = 0; i < model->dim * model->dim; ++i) M[i] *= wet.part;
     return share;
 }
 
@@ -167,7 +167,7 @@ double fu_span_added_mass_kinetic_energy(const fu_model *model, const fu_drag *d
             if (past_fluid) {
                 const double share = points.x[g] / it.l;
                 drag->on.kernel->point(it.l, it.e, it.v, it.s_rate, share, at.r, at.r_x, at.v);
-                fu_flow_at(model, drag, t, at.r, &flow);
+                fu_fluid_at(model, drag, t, at.r, &flow, 0);
             }
             impulse_at(model, drag, &it, &points, g, flow.U, &at, p, M);
             total += 0.5 * points.at[g].weight * fu_dot(model->dim, p, at.v);

@@ -99,8 +99,7 @@ static void table_at(const fu_model *model, const fu_flow *flow, double t, const
             for (int k = 0; k < 3; ++k) out->gradient[i * dim + j] += by_ground[i * 3 + k] * flow->axes[k * 3 + j];
 }
 
-/* Computes the velocity of a fluid at a point and its derivatives, without waves. */
-static void current_at(const fu_model *model, const fu_flow *flow, double t, const double *r, fu_flow_state *out)
+void fu_current_at(const fu_model *model, const fu_flow *flow, double t, const double *r, fu_flow_state *out)
 {
     const int dim = model->dim;
     double rate = 0.0, slope;
@@ -118,12 +117,6 @@ static void current_at(const fu_model *model, const fu_flow *flow, double t, con
         out->rate[i] = rate * factor * flow->velocity[i];
         for (int j = 0; j < dim; ++j) out->gradient[i * dim + j] = signal * slope * flow->velocity[i] * flow->up[j];
     }
-}
-
-void fu_flow_at(const fu_model *model, const fu_drag *drag, double t, const double *r, fu_flow_state *out)
-{
-    current_at(model, &drag->flow, t, r, out);
-    if (drag->waves.move_fluid) fu_add_waves(model, drag, t, r, out);
 }
 
 /* Returns the distance of a point and time within the edges of a table, relative to its axes: negative outside, 1

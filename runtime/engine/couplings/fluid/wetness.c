@@ -76,17 +76,10 @@ double fu_drag_height(const fu_model *model, const fu_drag *drag, double t, cons
     return drag->waves.n_waves ? height - fu_elevation_at(model, drag, t, r).eta : height;
 }
 
-fu_wetness fu_wet_part(const fu_model *model, const fu_drag *drag, double t, const double *r)
+int fu_near_surface(const fu_drag *drag, double height)
 {
-    fu_wetness out = {.part = 1.0};
-    fu_elevation at = {0.0, 0.0, {0.0}};
-    if (drag->wet != FU_ALL_WET) {
-        if (drag->waves.n_waves) at = fu_elevation_at(model, drag, t, r);
-        out = fu_wet_at_height(drag, height_above_still_level(model, drag, r) - at.eta);
-        out.rate = -out.slope * at.rate;
-    }
-    for (int d = 0; d < model->dim; ++d) out.up[d] = drag->flow.up[d] - at.slope[d];
-    return out;
+    const double reach = fu_wet_reach(drag) + drag->waves.max_elevation;
+    return fabs(height - drag->surface) <= reach || fabs(height - drag->bottom) <= reach;
 }
 
 /* Heights of the axis over a span of an element: a0 + a1 x + a2 x^2 + a3 x^3, x from 0 to 1. */
@@ -235,16 +228,12 @@ static void above_waves(const fu_model *model, const fu_drag *drag, double t, in
     *slope = fu_dot(dim, drag->flow.up, r_x) - fu_dot(dim, at.slope, r_x);
 }
 
-/* Computes the height above the surface of a point of a cable with these shape functions, and its slope by x. */
-static void on_cable_at(const fu_model *model, const fu_drag *drag, const element *of, const double *N,
-                        const double *N_x, const double *e, double *height, double *slope)
+/* Computes the height above the still level of the same, and its slope by x. */
+static void above_still_level(const fu_model *model, const fu_drag *drag, int n, const double *N, const double *N_x,
+                              const double *e, double *height, double *slope)
 {
-    if (drag->waves.n_waves) {
-        above_waves(model, drag, of->t, of->n, N, N_x, e, height, slope);
-        return;
-    }
-    *height = drag->flow.base + along_axis(model, drag, of->n, N, e);
-    *slope = along_axis(model, drag, of->n, N_x, e);
+    *height = drag->flow.base + along_axis(model, drag, n, N, e);
+    *slope = along_axis(model, drag, n, N_x, e);
 }
 
 /* Computes the height of a point at x of an element's axis, and its slope by x. */
@@ -254,7 +243,8 @@ static void axis_at(const fu_model *model, const fu_drag *drag, const element *o
     if (of->cable) {
         double N[FU_MAX_COORDINATES], N_x[FU_MAX_COORDINATES];
         of->cable->kernel->on_axis(of->length, x, N, N_x);
-        on_cable_at(model, drag, of, N, N_x, e, height, slope);
+        if (drag->waves.n_waves) above_waves(model, drag, of->t, of->n, N, N_x, e, height, slope);
+        else above_still_level(model, drag, of->n, N, N_x, e, height, slope);
         return;
     }
     double r[3], r_S[3], velocity[3];
@@ -263,28 +253,59 @@ static void axis_at(const fu_model *model, const fu_drag *drag, const element *o
     *slope = fu_dot(model->dim, drag->flow.up, r_S);
 }
 
-/* Returns whether an element is entirely on one side of each surface; *height is then a height of it. */
-static int is_uncut(const fu_model *model, const fu_drag *drag, const element *of, const double *e, double *height)
+/* The lowest and the highest of the samples of an element, m, and the steepest slope. */
+typedef struct {
+    double low, high, steepest;
+} height_range;
+
+static void widen(double height, double slope, height_range *range)
+{
+    range->low = fmin(range->low, height);
+    range->high = fmax(range->high, height);
+    range->steepest = fmax(range->steepest, fabs(slope));
+}
+
+/* Returns the range of heights above the surface with waves, or above the still level. */
+static height_range range_of(const fu_model *model, const fu_drag *drag, const element *of, const double *e,
+                             int with_waves)
 {
     const int n = of->n, per_node = of->cable ? of->cable->per_node : drag->on.kernel->coordinates / FU_SPAN_ENDS;
-    double low = fu_drag_height(model, drag, of->t, e), high = low, steepest = 0.0;
-    const double last = fu_drag_height(model, drag, of->t, e + per_node);
-    low = fmin(low, last);
-    high = fmax(high, last);
+    height_range range = {HUGE_VAL, -HUGE_VAL, 0.0};
+    for (int k = 0; k < 2; ++k)
+        widen(with_waves ? fu_drag_height(model, drag, of->t, e + k * per_node)
+                         : height_above_still_level(model, drag, e + k * per_node),
+              0.0, &range);
     for (int g = 0; g < drag->n_points; ++g) {
         double h, slope;
         if (of->cable) {
             const fu_quadrature_point point = fu_drag_point(drag, n, of->number, g);
-            on_cable_at(model, drag, of, point.N, point.N_x, e, &h, &slope);
+            if (with_waves) above_waves(model, drag, of->t, n, point.N, point.N_x, e, &h, &slope);
+            else above_still_level(model, drag, n, point.N, point.N_x, e, &h, &slope);
         } else axis_at(model, drag, of, e, of->length * PLAIN[0][g], &h, &slope);
-        low = fmin(low, h);
-        high = fmax(high, h);
-        steepest = fmax(steepest, fabs(slope));
+        widen(h, slope, &range);
     }
-    const double reach = drag->extent + HEIGHT_VARIATION * of->length * steepest;
-    *height = low;
-    return (low - reach > drag->surface || high + reach < drag->surface) &&
-           (low - reach > drag->bottom || high + reach < drag->bottom);
+    return range;
+}
+
+/* Returns whether a range with a margin is entirely on one side of each surface. */
+static int is_clear(const fu_drag *drag, const element *of, const height_range *range, double margin)
+{
+    const double reach = margin + drag->extent + HEIGHT_VARIATION * of->length * range->steepest;
+    return (range->low - reach > drag->surface || range->high + reach < drag->surface) &&
+           (range->low - reach > drag->bottom || range->high + reach < drag->bottom);
+}
+
+/* Returns whether an element is entirely on one side of each surface; *height is then a height of it. */
+static int is_uncut(const fu_model *model, const fu_drag *drag, const element *of, const double *e, double *height)
+{
+    height_range range = range_of(model, drag, of, e, 0);
+    int uncut = is_clear(drag, of, &range, drag->waves.max_elevation);
+    if (!uncut && drag->waves.n_waves) {
+        range = range_of(model, drag, of, e, 1);
+        uncut = is_clear(drag, of, &range, 0.0);
+    }
+    *height = range.low;
+    return uncut;
 }
 
 /* Computes the heights of a configuration, and adds the positions at which a surface touches the edge of the section to
