@@ -444,10 +444,23 @@ def laws() -> dict[str, list[str]]:
     return {element: possible_laws(kind) for element, kind in built_in().items()}
 
 
+def _fibres(on: Site) -> None:
+    """Add a taut rope of fibres below the middle, with working curves."""
+    x, y, _ = on.below(0.5, 3.0)
+    rope = on.scene.cable("fibres", start=(x - 0.4, y, 0), end=(x + 0.4, y, 0), elements=2, rest_length=0.795,
+                          element="cable8p" if on.planar else "cable12", membrane="tabulated", up=(0, 1, 0),
+                          section=fu.Circle(radius=0.01, tension_table=fu.TensionTable(strain=(0, 0.1),
+                                                                                       force=(0, 1e3))),
+                          material=fu.Material(youngs_modulus=3e7, poisson_ratio=0.3, density=1000))
+    on.scene.pin(rope, s=0)
+    on.scene.pin(rope, s=rope.length)
+    on.scene.working_curve(rope, permanent=0.3)
+
+
 MEMORY: dict[str, Callable[[Site], object]] = {
     "none": lambda on: None, "relaxation": lambda on: on.scene.relaxation("wire", stiffness=1e3, time=TIME),
     "wire_friction": lambda on: on.scene.wire_friction("wire", stiffness=0.2, moment=0.01),
-    "working_curve": lambda on: on.scene.working_curve("wire", permanent=0.3)}
+    "working_curve": _fibres}
 
 FACTORS: dict[str, list[str]] = {
     "element": ["cable12", *sorted(built_in().keys() - {"cable12"})],

@@ -23,7 +23,7 @@ class WorkingCurveModel(CouplingModel):
 
     permanent: permanent strain as a share of the highest one; highest (points,): highest strains before the start;
     weights (points,) in m; N_x (points, vectors): derivatives of the shape functions; first, shape: numbers of the
-    tables of first loading and of the shape.
+    tables of first loading and of the shape; remembers: whether the highest strains rise.
     """
 
     kernel: str
@@ -35,6 +35,7 @@ class WorkingCurveModel(CouplingModel):
     N_x: np.ndarray
     first: np.ndarray
     shape: np.ndarray
+    remembers: bool = True
 
 
 def working_curve_models(builder: ModelBuilder) -> Iterator[WorkingCurveModel]:

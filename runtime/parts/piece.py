@@ -8,6 +8,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 from pydantic import BeforeValidator, Field
 
+from .cubic_segments import value
 from .material import Material
 from .part import Part
 from .section import AnySection, Section
@@ -44,6 +45,17 @@ class UniformPiece(NamedTuple):
     section: Section
     material: Material
     hinge: bool = False
+
+    @property
+    def axial_stiffness(self) -> float:
+        """Return EA in N, or the mean slope of the table of its force."""
+        table = self.section.tension_table
+        return self.material.youngs_modulus * self.section.area if table is None else table.force[-1] / table.strain[-1]
+
+    def tension_at(self, strain: np.ndarray) -> np.ndarray:
+        """Return the axial force at engineering strains, N: EA times the strain, or by the table."""
+        table = self.section.tension_table
+        return self.axial_stiffness * strain if table is None else value(table.numbers(), strain)
 
 
 def _listed(value: Any) -> list[Any]:

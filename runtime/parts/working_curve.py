@@ -25,7 +25,7 @@ class WorkingCurve(Part):
     On first loading the force is the ``tension_table`` N₀ of the cable. Below the highest strain H of a point the rope
     unloads, and reloads, along a working curve: from the strain ``permanent`` times H without force, where it is slack,
     it rises to N₀(H). Beyond H it follows the table again. With x from 0 to 1 between both strains the force is N₀(H)
-    times x with curve="linear", x (1 - bend + bend x) with "quadratic" and (exp(bend x) - 1)/(exp(bend) - 1) with
+    times x with form="linear", x (1 - bend + bend x) with "quadratic" and (exp(bend x) - 1)/(exp(bend) - 1) with
     "exponential".
 
     A curve by ``strain`` and ``force`` is one that was measured, from the strain without force to the highest one, on
@@ -43,7 +43,7 @@ class WorkingCurve(Part):
 
     cable: cable8p or cable12 with membrane="tabulated" and a table from strain 0 on
     permanent: permanent strain as a share of the highest one, from 0 to below 1
-    curve: shape of the working curve, "linear", "quadratic" or "exponential"
+    form: of the working curve, "linear", "quadratic" or "exponential"
     bend: of the shape, from 0, which is straight, to 1 with "quadratic" and 10 with "exponential"
     strain: of a measured curve, in the place of the three above; increasing, at most 20
     force: of a measured curve, N, increasing from 0
@@ -62,7 +62,7 @@ class WorkingCurve(Part):
     cable: Reference
     permanent: Annotated[float, bounded("", lambda x: 0 <= x < 1, "be from 0 to below 1", minimum=0,
                                         exclusiveMaximum=1)] | None = None
-    curve: Annotated[str, one_of(tuple(MOST_BEND))] = "linear"
+    form: Annotated[str, one_of(tuple(MOST_BEND))] = "linear"
     bend: Annotated[float, not_negative()] = 0.0
     strain: Annotated[tuple[float, ...], list_of("", least=2)] | None = None
     force: Annotated[tuple[float, ...], list_of("N", least=2)] | None = None
@@ -74,15 +74,15 @@ class WorkingCurve(Part):
             if self.permanent is None:
                 raise ValueError("needs permanent, or strain and force", "give the permanent strain as a share of the "
                                  "highest one, or a measured curve")
-            if self.bend > 0 and self.curve == "linear":
-                raise ValueError(f'bend needs curve="quadratic" or "exponential", got {self.bend:g} with "linear"')
-            if self.bend > (most := MOST_BEND[self.curve]):
-                raise ValueError(f'bend must be from 0 to {most:g} with curve="{self.curve}", got {self.bend:g}')
+            if self.bend > 0 and self.form == "linear":
+                raise ValueError(f'bend needs form="quadratic" or "exponential", got {self.bend:g} with "linear"')
+            if self.bend > (most := MOST_BEND[self.form]):
+                raise ValueError(f'bend must be from 0 to {most:g} with form="{self.form}", got {self.bend:g}')
             return self
         if self.strain is None or self.force is None:
             raise ValueError("strain and force belong together, got one of them", "give both")
-        if self.permanent is not None or self.bend or self.curve != "linear":
-            raise ValueError("permanent, curve and bend are given beside strain and force, which say the same",
+        if self.permanent is not None or self.bend or self.form != "linear":
+            raise ValueError("permanent, form and bend are given beside strain and force, which say the same",
                              "leave out the ones or the others")
         _check_measured(self.strain, self.force)
         return self
@@ -107,7 +107,7 @@ class WorkingCurve(Part):
             strain, force = np.array(self.strain), np.array(self.force)
             x, y = (strain - strain[0]) / (strain[-1] - strain[0]), force / force[-1]
             return x, y, PchipInterpolator(x, y).derivative()(x)
-        if self.curve == "exponential" and self.bend > 0:
+        if self.form == "exponential" and self.bend > 0:
             x = np.linspace(0, 1, MAX_POINTS)
             rise = np.expm1(self.bend)
             return x, np.expm1(self.bend * x) / rise, self.bend * np.exp(self.bend * x) / rise

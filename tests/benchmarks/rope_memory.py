@@ -1,5 +1,4 @@
-"""Ropes with memory: viscosity, friction between wires and working curves beside closed forms, with every integrator
-that has them.
+"""Ropes with memory: viscosity, friction between wires and working curves beside closed forms, by integrator.
 
     python tests/benchmarks/rope_memory.py [--out FILE.csv]
 
@@ -179,7 +178,7 @@ def fibres(curve: str = "linear", element: str = "cable8p", density: float = ROP
     scene.cable("rope", start=(0, 0, 0), end=(L, 0, 0), elements=elements, element=element, membrane="tabulated",
                 section=Circle(radius=RADIUS, tension_table=FIBRES), material=ROPE.remade({"density": density}))
     scene.pin("rope", s=0.0)
-    scene.working_curve("rope", permanent=PERMANENT, curve=curve, **CURVES[curve], name="worked")
+    scene.working_curve("rope", permanent=PERMANENT, form=curve, **CURVES[curve], name="worked")
     return scene
 
 

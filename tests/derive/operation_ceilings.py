@@ -299,8 +299,8 @@ CEILINGS = {
     },
     "planar_branch": {"measures": 14, "force": 44, "tangent": 260, "hold": 12, "slide": 32},
     "branch": {"measures": 49, "force": 287, "tangent": 2750, "hold": 24, "slide": 70},
-    "planar_working_curve": {"measure": 9, "change": 14, "force": 17, "tangent": 48},
-    "working_curve": {"measure": 9, "change": 14, "force": 19, "tangent": 103},
+    "planar_working_curve": {"measure": 8, "change": 21, "force": 14, "tangent": 54},
+    "working_curve": {"measure": 10, "change": 21, "force": 20, "tangent": 104},
     "planar_rope_point": {"point": 357, "wrench": 776, "discrete_point": 392, "slope": 294, "slope_stiffness": 519},
     "rope_point": {"point": 402, "wrench": 844, "discrete_point": 297, "slope": 341, "slope_stiffness": 607},
     "planar_taut_rope": {

@@ -33,7 +33,7 @@ PLACES = {
     "forces of branches and working curves within elements, which a balance does not know": [
         "results/section_forces/balance_limits.py"],
     "highest strains of ropes in a state": ["model/initial_state.py"],
-    "energy that is lost in a relaxation": ["solve/statics/relaxation.py"],
+    "highest strains stay as they are in a search for rest": ["solve/statics/relaxation.py"],
     "contact with surfaces: depth, ends of the surface, what a cable lies on": [
         "solve/linear/condensation.py", "solve/modes/contact_edges.py", "solve/notes/penetrations.py",
         "solve/notes/surface_ends.py", "solve/notes/coarse_contact.py", "solve/statics/lying.py",

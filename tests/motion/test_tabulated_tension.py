@@ -4,6 +4,8 @@ import funicular as fu
 import numpy as np
 import pytest
 from expectations import refused
+from funicular.solve.notes.note import LineStiffness
+from funicular.solve.notes.supersonic_loads import excess
 from interrupted_runs import check_file_and_resume
 from scipy.integrate import quad
 from scipy.interpolate import PchipInterpolator
@@ -203,3 +205,12 @@ def test_laws_and_sections_that_do_not_suit():
         fu.Scene().cable("rope", element="cable12", **given)
     with pytest.raises(fu.SceneError, match='law "engineering_exact_tabulated" is not possible for cable18'):
         fu.Scene().cable("rope", element="cable18", membrane="tabulated", **given)
+
+
+def test_wave_speeds_are_those_of_the_table():
+    """A point outruns the transverse waves, √(N/ρA(1 + strain)), whatever Young's modulus is."""
+    scene = rope(end=(LENGTH * 1.03, 0, 0), rest_length=LENGTH, material=material(youngs_modulus=1e9))
+    at_rest = np.sqrt(float(LAW(0.03)) / 1.03 / (AREA * DENSITY))
+    for speed in (0.999 * at_rest, 1.001 * at_rest):
+        assert (excess(scene.cables["rope"], 1.03, speed) > 0) == (speed > at_rest)
+    assert LineStiffness.of(scene.cables["rope"], 3).EA == pytest.approx(FORCE[-1] / STRAIN[-1])

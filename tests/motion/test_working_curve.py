@@ -98,7 +98,7 @@ def test_a_measured_unloading_is_scaled_to_other_turning_points():
 def test_a_body_vibrates_by_the_working_curve(curve, validated):
     """Modes about first loading have the slope of the working curve from there; table and highest tension alike."""
     slope = {"linear": 1.0, "quadratic": 1 + BEND, "exponential": BEND * np.exp(BEND) / np.expm1(BEND)}[curve]
-    scene = with_body(curve=curve, **CURVES[curve])
+    scene = with_body(form=curve, **CURVES[curve])
     found = scene.modes(3, about=scene.equilibrium()).frequency
     rope = 20.0 * np.pi * RADIUS**2 * L
     expected = np.sqrt(slope * EA / (1 - PERMANENT) / L / (MASS + rope / 3)) / (2 * np.pi)
@@ -166,6 +166,14 @@ def test_fast_changes_are_stiffer_with_a_relaxation():
     assert found == pytest.approx(dynamic * amplitude / L, rel=1e-4)
 
 
+def test_a_damped_motion_to_rest_remembers_nothing():
+    """It overshoots, and ends on first loading as `equilibrium` does, or on the working curve from a tension."""
+    for top in (0.0, 3 * MASS * G):
+        scene = with_body("cable12", highest_tension=top)
+        rest, other = scene.equilibrium(), scene.relax()
+        np.testing.assert_allclose(other["worked.strain"], rest["worked.strain"], rtol=1e-8)
+
+
 def test_pieces_have_their_own_first_loading():
     """Two tables in one rope: the same working curve from each."""
     soft = fu.TensionTable(strain=[0, 0.1], force=[0, 0.05 * EA])
@@ -187,10 +195,10 @@ def test_pieces_have_their_own_first_loading():
     ({}, "needs permanent, or strain and force; give the permanent strain as a share of the highest one, or a measured "
      "curve"),
     ({"permanent": 1.0}, "permanent must be from 0 to below 1, got 1"),
-    ({"permanent": 0.2, "bend": 0.5}, 'bend needs curve="quadratic" or "exponential", got 0.5 with "linear"'),
-    ({"permanent": 0.2, "curve": "quadratic", "bend": 1.5}, 'bend must be from 0 to 1 with curve="quadratic", got 1.5'),
+    ({"permanent": 0.2, "bend": 0.5}, 'bend needs form="quadratic" or "exponential", got 0.5 with "linear"'),
+    ({"permanent": 0.2, "form": "quadratic", "bend": 1.5}, 'bend must be from 0 to 1 with form="quadratic", got 1.5'),
     ({"strain": (0, 0.1)}, "strain and force belong together, got one of them; give both"),
-    ({"strain": (0, 0.1), "force": (0, 1e3), "permanent": 0.1}, "permanent, curve and bend are given beside strain and "
+    ({"strain": (0, 0.1), "force": (0, 1e3), "permanent": 0.1}, "permanent, form and bend are given beside strain and "
      "force, which say the same; leave out the ones or the others"),
     ({"strain": (0.01, 0.1), "force": (5, 1e3)}, "force must begin at 0, got 5 N; add the point of the permanent "
      "strain, at which the rope becomes slack"),

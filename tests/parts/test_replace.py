@@ -147,7 +147,7 @@ def everything() -> fu.Scene:
         scene.cable(name, **ROPE | {"start": (0, 0, 5 + k), "end": (1, 0, 5 + k), "membrane": "tabulated",
                                     "section": fu.Circle(radius=0.01, tension_table=fu.TensionTable(
                                         strain=(0, 0.1), force=(0, 1e3)))})
-    scene.working_curve("fibres", permanent=0.3, curve="exponential", bend=0.5, name="worked")
+    scene.working_curve("fibres", permanent=0.3, form="exponential", bend=0.5, name="worked")
     scene.crossing("rope", "B", at=(0, 0.5, 0), axis=(0, 0, 1), length=0.2, stiffness=1e3, name="touch")
     return scene
 
@@ -213,7 +213,7 @@ OTHERS = {
             "name": "x"},
     "relaxation": {"cable": "rope", "stiffness": 2e3, "time": 0.7, "name": "other"},
     "wire_friction": {"cable": "rope", "stiffness": 0.7, "moment": 0.2, "name": "other"},
-    "working_curve": {"cable": "yarn", "permanent": 0.2, "curve": "quadratic", "bend": 0.4, "highest_tension": 50.0,
+    "working_curve": {"cable": "yarn", "permanent": 0.2, "form": "quadratic", "bend": 0.4, "highest_tension": 50.0,
                       "name": "other"},
     "crossing": {"a": "hook", "b": "A", "at": (0, 0.6, 0), "axis": (0, 1, 1), "length": 0.3, "radius": 0.02,
                  "stiffness": 2e3, "exponent": 1.5, "damping": 0.1, "tangential_stiffness": 1e5,

@@ -12,10 +12,9 @@ import numpy as np
 from ...engine import Engine
 from ...model.model import CableModel, Model
 from ...parts.cable import Cable
-from ...parts.material import Material
+from ...parts.piece import UniformPiece
 from ...parts.rope import Rope
 from ...parts.scene_data import SceneData
-from ...parts.section import Section
 from ...parts.settings import RunSettings
 
 Rows = dict[str, np.ndarray]
@@ -71,8 +70,8 @@ class Note:
 
 
 class LineStiffness(NamedTuple):
-    """EA of a cable or rope in N, its smaller and larger EI in N m², of a planar scene that in its plane, and its mass
-    in kg/m; of a cable of several pieces (elements,) each.
+    """EA of a cable or rope in N, or the mean slope of a table of its force, its smaller and larger EI in N m², of a
+    planar scene that in its plane, and its mass in kg/m; of a cable of several pieces (elements,) each.
     """
 
     EA: Any
@@ -84,7 +83,7 @@ class LineStiffness(NamedTuple):
     def of(cls, part: Cable | Rope, dim: int) -> LineStiffness:
         """Return those of the section and material of a cable or rope."""
         pieces = part.uniform_pieces
-        each = [cls._of(piece.section, piece.material, dim) for piece in pieces]
+        each = [cls._of(piece, dim) for piece in pieces]
         if len(each) == 1:
             return each[0]
         return cls(*np.repeat(each, [piece.end - piece.first for piece in pieces], axis=0).T)
@@ -95,10 +94,10 @@ class LineStiffness(NamedTuple):
         return self if isinstance(self.mass, float) else LineStiffness(*map(np.min, self))
 
     @classmethod
-    def _of(cls, section: Section, material: Material, dim: int) -> LineStiffness:
-        E, (area, *bending) = material.youngs_modulus, section.moments().tolist()
+    def _of(cls, piece: UniformPiece, dim: int) -> LineStiffness:
+        E, (area, *bending) = piece.material.youngs_modulus, piece.section.moments().tolist()
         weak, strong = (bending[0],) * 2 if dim == 2 else sorted(bending[:2])
-        return cls(E * area, E * weak, E * strong, material.density * area)
+        return cls(piece.axial_stiffness, E * weak, E * strong, piece.material.density * area)
 
 
 def element_place(cable: CableModel, k: int) -> str:

@@ -25,9 +25,8 @@ def excess(cable: Cable, stretch: ArrayLike, speed: ArrayLike) -> np.ndarray:
     stretch: of the cable; speed: of the point, in m/s of its arc-length at rest.
     """
     a = np.asarray(stretch)
-    return np.asarray(np.max([piece.section.area * (piece.material.density * np.square(speed)
-                                         - piece.material.youngs_modulus * (a - 1.0) / a)
-                   for piece in cable.uniform_pieces], axis=0))
+    return np.asarray(np.max([piece.section.area * piece.material.density * np.square(speed)
+                              - piece.tension_at(a - 1.0) / a for piece in cable.uniform_pieces], axis=0))
 
 
 def outrunning(scene: SceneData) -> list[str]:

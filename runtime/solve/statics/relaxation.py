@@ -114,9 +114,10 @@ class _Motion:
         self.units = np.where(problem.weight > 0, problem.weight, np.inf)
         self.largest_load = float(np.max(np.abs(problem.load_vector() / self.units), initial=0.0)) or 1.0
         self.has_energy = not (any(not isinstance(load, DeadLoadModel) for load in self.model.loads) or self.model.drags
-                               or self.model.ices or self.model.working_curves
-                               or any(contact.friction for contact in self.model.contacts)
+                               or self.model.ices or any(contact.friction for contact in self.model.contacts)
                                or any(branch.limit for branch in self.model.branches))
+        for curve in self.model.working_curves:
+            curve.remembers = False
         self.time = float(np.sqrt(problem.size / (np.linalg.norm(scene.gravity) or DEFAULT_GRAVITY)))
         self.step = FIRST_TIME_STEP * self.time
         self.report = Relaxation()

@@ -19,8 +19,7 @@ from ...model.drags import DragModel
 from ...model.loads import GAUSS_POINTS, DeadLoadModel
 from ...model.model import Model
 from ...model.unknowns import as_supports_leave
-from ...parts.cable import Cable
-from ...parts.section import Section
+from ...parts.piece import UniformPiece
 from .single_string import rest_between
 from .static_problem import StaticProblem
 from .string_nodes import SmoothTie, StringNodes, rests
@@ -210,7 +209,7 @@ class _Line:
         r[self.at], fixed[self.at] = self.q[self.nodes.r[self.own]], self.nodes.fixed[self.own]
         load = self._load(force)
         links = np.concatenate([np.stack([each[:-1], each[1:]], axis=1) for each in self.along])
-        axial = np.concatenate([np.repeat(self._stiffness(part, lambda section: section.area), self.parts)
+        axial = np.concatenate([np.repeat(part.of_elements(lambda piece: piece.axial_stiffness), self.parts)
                                 for part in self.drawn])
         made = Strings(r, fixed, load, links, np.concatenate(self.lengths), axial, *self._bends(),
                        *self._planes(fixed, load))
@@ -219,11 +218,6 @@ class _Line:
             self.order = reverse_cuthill_mckee((beside + beside.T).tocsr(), symmetric_mode=True)
             made = made.renumbered(self.order)
         return made
-
-    @staticmethod
-    def _stiffness(part: Cable, size: Callable[[Section], float]) -> np.ndarray:
-        """Return (elements,): Young's modulus times a size of the section of each element of a cable."""
-        return part.of_elements(lambda piece: piece.material.youngs_modulus * size(piece.section))
 
     def _load(self, force: np.ndarray) -> np.ndarray:
         """Return (n, dim): forces on the cables' nodes, distributed over the links of the adjacent elements."""
@@ -242,7 +236,7 @@ class _Line:
 
     def _bends(self) -> tuple[np.ndarray, ...]:
         """Return bends, factors, natural and bending of `Strings`: at inner nodes, smooth ties and clamps."""
-        stiffness = {int(c): np.repeat(self._stiffness(part, lambda section: min(section.moments()[1:3])), self.parts)
+        stiffness = {int(c): np.repeat(part.of_elements(_bending_stiffness), self.parts)
                      * (not part.is_curved) for c, part in zip(self.group, self.drawn, strict=True)}
         nodes, sides, bends = [], [], []
         for c, along, length, part in zip(self.group, self.along, self.lengths, self.drawn, strict=True):
@@ -356,6 +350,11 @@ class _Line:
         found[own] = q[own] + as_supports_leave(found[own] - q[own], self.model.unknown_of_dof[own],
                                                 self.model.combinations)
         return found
+
+
+def _bending_stiffness(piece: UniformPiece) -> float:
+    """Return the smaller EI of a piece in N m²."""
+    return piece.material.youngs_modulus * float(min(piece.section.moments()[1:3]))
 
 
 def _stiffness(contact: ContactModel, pressure: np.ndarray) -> np.ndarray:

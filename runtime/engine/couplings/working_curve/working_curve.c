@@ -67,6 +67,7 @@ static void point_at(const fu_model *model, const fu_working_curve *curve, const
     /* small vibrations about a state of first loading follow its working curve: the strain is then the highest one */
     if (at->strain > before && !model->vibrates) at->D = 0.0;
     if (at->strain > before) at->n = 0.0;
+    if (at->strain > before && !curve->remembers) at->U = -lost_at(curve, before);
 }
 
 static void force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
@@ -118,7 +119,7 @@ static void reset(const fu_coupling *coupling, fu_state *state)
 static void update_history(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     const fu_working_curve *curve = of(coupling);
-    for (int k = 0; k < POINTS; ++k) {
+    for (int k = 0; k < POINTS && curve->remembers; ++k) {
         curve_point at;
         point_at(model, curve, state, k, &at);
         highest_of(curve, state)[k] = at.highest;
@@ -143,7 +144,7 @@ static double lost_in_step(const fu_model *model, const fu_coupling *coupling, c
     const fu_working_curve *curve = of(coupling);
     double sum = 0.0;
     (void)by_ends;
-    for (int k = 0; k < POINTS; ++k) {
+    for (int k = 0; k < POINTS && curve->remembers; ++k) {
         const double before = highest_of(curve, from)[k];
         curve_point at;
         point_at(model, curve, to, k, &at);
@@ -204,11 +205,17 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
 
 static const char *const role[] = {"working_curve", 0};
 static const fu_field fields[] = {
-    FU_FIELD(fu_working_curve, kernel, FU_KERNELS, role), FU_FIELD(fu_working_curve, cable, FU_INTEGER, 0),
-    FU_FIELD(fu_working_curve, element, FU_INTEGER, 0),   FU_FIELD(fu_working_curve, permanent, FU_REAL, 0),
-    FU_FIELD_ARRAY(fu_working_curve, highest, FU_REAL),   FU_FIELD_ARRAY(fu_working_curve, weights, FU_REAL),
-    FU_FIELD(fu_working_curve, N_x, FU_REALS, 0),         FU_FIELD(fu_working_curve, first, FU_REALS, 0),
-    FU_FIELD(fu_working_curve, shape, FU_REALS, 0),       {0},
+    FU_FIELD(fu_working_curve, kernel, FU_KERNELS, role),
+    FU_FIELD(fu_working_curve, cable, FU_INTEGER, 0),
+    FU_FIELD(fu_working_curve, element, FU_INTEGER, 0),
+    FU_FIELD(fu_working_curve, remembers, FU_INTEGER, 0),
+    FU_FIELD(fu_working_curve, permanent, FU_REAL, 0),
+    FU_FIELD_ARRAY(fu_working_curve, highest, FU_REAL),
+    FU_FIELD_ARRAY(fu_working_curve, weights, FU_REAL),
+    FU_FIELD(fu_working_curve, N_x, FU_REALS, 0),
+    FU_FIELD(fu_working_curve, first, FU_REALS, 0),
+    FU_FIELD(fu_working_curve, shape, FU_REALS, 0),
+    {0},
 };
 
 static const fu_start_operations start = {.reset = reset};

@@ -11,7 +11,8 @@ typedef struct {
     fu_coupling base;
     const fu_working_curve_kernels *kernel;
     int cable, element;
-    double permanent;                        /* permanent strain by the highest one */
+    int remembers;    /* whether the highest strains rise, as in all motions but those that search for rest */
+    double permanent; /* permanent strain by the highest one */
     double highest[FU_WORKING_CURVE_POINTS]; /* highest strains before the start */
     double weights[FU_WORKING_CURVE_POINTS]; /* of the points, m */
     const double *N_x;                       /* (points x vectors of an element): derivatives of the shape functions */
