@@ -159,6 +159,22 @@ def test_runs_resume_and_files_keep_ice(tmp_path):
     check_file_and_resume(scene, tmp_path, 6, duration=0.02, tol=1e-3, output_step=0.002)
 
 
+@pytest.mark.parametrize(("path", "between"), [("gravity.y", (-15, -5)), ("w.material.density", (2000, 6000)),
+                                               ("glaze.thickness", (0.01, 0.04)), ("w.section.radius", (0.008, 0.015))])
+def test_numbers_beside_ice_are_adjusted(path, between):
+    """From a slack line drawn straight, whose string knows the ice, too; derivatives contain it: few iterations."""
+    scene = fu.Scene(gravity=(0, -G, 0))
+    scene.cable("w", start=(0, 0, 0), end=(50, 0, 0), rest_length=50.2, rest="straight", element="cable8p", elements=8,
+                **WIRE)
+    scene.pin("w", s=0)
+    scene.pin("w", s=50.2)
+    scene.ice("w", stop=25.1, thickness=T, name="glaze")
+    found = scene.equilibrium(adjust={path: between}, to={"w@0.force.x": -3100.0})
+    again = np.asarray(found.scene.equilibrium()["w@0.force"])
+    assert again[0] == pytest.approx(-3100.0, rel=1e-7)
+    assert found.adjustment.iterations <= 4
+
+
 def test_what_ice_does_not_suit_is_refused():
     scene = taut(elements=4, gravity=(0, -G, 0))
     with refused('ice "a": start must be a node of the cable, got 1 m; nodes are at 0, 2.5, 5, 7.5, 10 m'):

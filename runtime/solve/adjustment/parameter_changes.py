@@ -111,7 +111,7 @@ class Changes:
         found = any(contact.a in names and contact.as_made().stiffness is None and not contact.is_hard
                     for contact in self.scene.contacts.values())
         modal = any(body.modes for body in self.model.bodies)
-        return not (found or modal or self.rest.reader.sections or self.scene.drags)
+        return not (found or modal or self.rest.reader.sections or self.scene.drags or self.scene.ices)
 
     def _of_all(self, path: Path) -> Change | None:
         """Return the change by gravity or by the temperature of the scene, None where it is more than a `Change`."""

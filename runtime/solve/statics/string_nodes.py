@@ -10,6 +10,7 @@ import numpy as np
 from ...model.contacts import ContactModel
 from ...model.crossings import CrossingModel
 from ...model.drags import DragModel
+from ...model.ices import IceModel
 from ...model.joints import JointModel
 from ...model.loads import AnyLoadModel
 from ...model.model import Model
@@ -145,7 +146,7 @@ class StringNodes:
         for coupling in self.model.couplings:
             if rests(coupling):
                 self.above_plane |= _cables_of(coupling)
-            if isinstance(coupling, AnyLoadModel | DragModel) or rests(coupling) or _joins_pieces(coupling):
+            if isinstance(coupling, AnyLoadModel | DragModel | IceModel) or rests(coupling) or _joins_pieces(coupling):
                 continue
             cables = _cables_of(coupling)
             node = self._node_of(coupling) if len(cables) == 1 else None
