@@ -336,7 +336,7 @@ def _first(lines: list[str], pattern: str, fits: Callable[[dict[str, Any]], bool
 
 
 def _parsed(lines: list[str]) -> dict[str, Any] | None:
-    import tomllib
+    import tomllib  # likewise: only for lines of errors
 
     try:
         return tomllib.loads("".join(lines))
