@@ -52,11 +52,11 @@ def _check_on_ropes(scene: SceneData, joint: Joint) -> None:
 
 
 def _check_friction(scene: SceneData, joint: Joint) -> None:
-    """Raise SceneError for friction of a joint on a cable or a rope."""
+    """Raise SceneError for friction of a joint on a rope."""
     for end in (joint.a, joint.b):
-        if joint.friction is not None and end.on is not None and scene.line(end.on) is not None:
-            raise SceneError(joint.where, f'has friction, but "{end.on}" is no body',
-                             "join it to a small body, and that to the cable by another joint")
+        if joint.friction is not None and end.on in scene.ropes:
+            raise SceneError(joint.where, f'has friction, but "{end.on}" is a rope, which has no axes',
+                             "join it to a small body, and that to the rope by another joint")
 
 
 def check_joint(scene: SceneData, joint: Joint) -> None:

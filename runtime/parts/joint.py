@@ -55,8 +55,8 @@ class Joint(Part):
         distance, m
     velocity: rate of the angle or the distance, rad/s or m/s
     length: of a distance joint, m; by default the distance at the start
-    friction: of a revolute, prismatic or cylindrical joint between bodies or of one with the ground, regularised; the
-        joint's force across the axis presses, not its moment
+    friction: of a revolute, prismatic or cylindrical joint, not on ropes, regularised; the joint's force across the
+        axis presses, not its moment
     radius: of the pin, for friction of revolute and cylindrical joints, m
     normal_force: presses in the place of the joint's force, as in a brake, N
     """

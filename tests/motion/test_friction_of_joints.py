@@ -6,6 +6,7 @@ import pytest
 from expectations import refused
 from interrupted_runs import check_file_and_resume
 from scipy.optimize import brentq
+from viewed_scenes import hoist
 
 INTEGRATORS = "genalpha", "radau", "explicit"
 MASS, INERTIA, RADIUS, COEFFICIENT, CLAMP = 3.0, 0.5, 0.2, 0.4, 50.0
@@ -219,8 +220,75 @@ def test_shared_forces_are_refused():
     assert run["D.angular_velocity"][-1, 2] == pytest.approx(1 - 2 * 0.1 * 5 * 0.1 / 2 * 0.1, abs=1e-6)
 
 
-def test_friction_on_a_cable_is_refused():
-    scene = wheel(2)
-    scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(5, 0, 0))
-    with pytest.raises(fu.SceneError, match='joint "pin": has friction, but "far" is no body'):
-        scene.joint("revolute", ("far", 0.0), "A", name="pin", friction=0.1, radius=0.1)
+def arms(dim: int, count: int = 1, element: str | None = None, **given) -> fu.Scene:
+    """Return horizontal beams of 1 m in a row, from a pin at the ground on, with friction in the joints between them.
+    """
+    scene, area = fu.Scene(gravity=(0, -9.81, 0)), 1e-3
+    element = element or ("cable8p" if dim == 2 else "beam24")
+    for k in range(count):
+        scene.cable(f"arm{k}", start=(k, 0, 0), end=(k + 1, 0, 0), elements=1, element=element,
+                    up=(0, 1, 0), section=fu.Rectangle(height=area**0.5, width=area**0.5),
+                    material=fu.Material(youngs_modulus=1e8, poisson_ratio=0.0, density=2000),
+                    **({"law": "structural"} if element == "beam24" else {}))
+        scene.joint("revolute", (f"arm{k - 1}", 1.0) if k else (0, 0, 0), (f"arm{k}", 0.0), axis=(0, 0, 1),
+                    name=f"pin{k}", friction=rough(velocity=1e-4), radius=0.1, **given)
+    return scene
+
+
+def directions(run: fu.Run, name: str, node: int) -> np.ndarray:
+    """Return the angles (T,) of a slope of a cable."""
+    slope = run[f"{name}.nodal_vectors"][:, node, 1]
+    return np.unwrap(np.arctan2(slope[:, 1], slope[:, 0]))
+
+
+@pytest.mark.parametrize(("dim", "count", "integrator"), [
+    (2, 1, "radau"), (3, 1, "radau"), (3, 1, "genalpha"), (2, 1, "explicit"), (2, 2, "radau"), (3, 2, "radau")])
+def test_pins_of_cables_dissipate_their_torque_times_the_angle(dim, count, integrator):
+    """A given normal force has a constant torque, which sections next to the pin bear."""
+    torque = COEFFICIENT * 30.0 * 0.1
+    run = arms(dim, count, normal_force=30.0).run(0.2, output_step=0.05, tol=1e-5, integrator=integrator,
+                                                  progress=False)
+    turned = np.abs(directions(run, "arm0", 0)[-1])
+    if count == 2:
+        relative = directions(run, "arm1", 0) - directions(run, "arm0", 1)
+        turned += np.abs(np.diff(relative)).sum()
+    assert turned > 0.2
+    assert run["energy.dissipated"][-1] == pytest.approx(torque * turned, rel=2e-3)
+    assert np.abs(run["pin0.moment"][2:, 2]) == pytest.approx(torque, rel=1e-4)
+    total = sum(run[f"energy.{name}"] for name in ("kinetic", "elastic", "potential", "dissipated"))
+    assert np.ptp(total) < 2e-4 * np.ptp(run["energy.potential"])
+    moment = np.asarray(run.section_forces("arm0", s=[1e-6])["moment"])[-1, 0, 2]
+    assert abs(moment) == pytest.approx(torque, rel=1e-3)
+
+
+def test_the_force_of_a_cable_presses_its_pin():
+    runs = [arms(3).run(0.05, output_step=0.025, tol=1e-5, integrator=integrator, progress=False)
+            for integrator in INTEGRATORS[:2]]
+    for run in runs:
+        assert run["arm0.nodal_vectors"] == pytest.approx(runs[0]["arm0.nodal_vectors"], abs=2e-5)
+        force = np.linalg.norm(run["pin0.force"][1:], axis=1)
+        assert np.abs(run["pin0.moment"][1:, 2]) == pytest.approx(COEFFICIENT * 0.1 * force, rel=1e-3)
+
+
+def test_runs_with_a_rough_pin_of_a_cable_resume(tmp_path):
+    check_file_and_resume(arms(3), tmp_path, 8, duration=0.04, tol=1e-4, output_step=0.005, integrator="radau")
+
+
+def test_statics_and_modes_of_a_cable_do_not_feel_the_friction_of_its_pin():
+    rough_scene, bare = arms(2, normal_force=30.0), arms(2, normal_force=30.0)
+    bare = bare.replace("pin0", friction=None, radius=None, normal_force=None)
+    for scene in (rough_scene, bare):
+        scene.pin("arm0", s=1.0)
+    states = [scene.equilibrium() for scene in (rough_scene, bare)]
+    assert states[0]["arm0.nodal_vectors"] == pytest.approx(states[1]["arm0.nodal_vectors"], abs=1e-12)
+    rough_modes, bare_modes = (scene.modes(2, about=state).frequency for scene, state in
+                               zip((rough_scene, bare), states, strict=True))
+    assert rough_modes == pytest.approx(bare_modes, rel=1e-9)
+
+
+def test_friction_on_a_rope_is_refused():
+    scene = hoist(held=True)
+    scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(-0.25, -1.5, 0))
+    with refused('joint "pin": has friction, but "rope" is a rope, which has no axes; '
+                 "join it to a small body, and that to the rope by another joint"):
+        scene.joint("revolute", ("rope", 1.0), "A", name="pin", friction=0.1, radius=0.1)

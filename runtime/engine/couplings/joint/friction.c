@@ -165,7 +165,8 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     for (int r = 0; r < rows; ++r) internal[r] = fu_extra(model, coupling->unknown) + r;
     for (int e = 0; e < 2; ++e) {
         const int n = by.n[e];
-        const fu_side columns = {n, by.at[e], 1}, other = {by.n[!e], by.at[!e], 1};
+        const fu_side columns = {n, by.at[e], joint->attachments[e].body >= 0};
+        const fu_side other = {by.n[!e], by.at[!e], joint->attachments[!e].body >= 0};
         double scaled[MAX_ROWS * FU_ATTACHMENT_COORDINATES];
         for (int r = 0; r < rows; ++r)
             for (int i = 0; i < n; ++i)
@@ -173,7 +174,9 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
         fu_add_block(model, system, columns, (fu_side){rows, internal, 1}, 1.0, scaled, 1, n);
         fu_turn_attachment(model, &joint->attachments[e], equations->psi, by.J[e], rows + by.n[0] + by.n[1], n, 0);
         fu_add_block(model, system, columns, columns, w.stiffness, by.K[e][e], n, 1);
-        if (by.across) fu_add_block(model, system, other, columns, w.stiffness, by.K[!e][e], n, 1);
+        /* terms between two cables would widen the band: Newton converges without them */
+        if (by.across && !fu_between_cables(joint))
+            fu_add_block(model, system, other, columns, w.stiffness, by.K[!e][e], n, 1);
     }
 }
 
