@@ -27,7 +27,7 @@ def placed_working_curve(scene: SceneData, part: WorkingCurve) -> WorkingCurve:
         raise SceneError(part.where, f"needs the force of first loading, but {cable.where} has no table that begins at "
                          "strain 0", 'give its section a tension_table from strain 0 on, and the cable '
                          'membrane="tabulated"')
-    if cable.temperature is not None or cable.growth.signal is not None:
+    if cable.temperature is not None or cable.grows:
         raise SceneError(part.where, f"{cable.where} has a temperature or a rest_length that changes, which the "
                          "working curve would take for strain", "leave it out")
     for other in scene.working_curves.values():

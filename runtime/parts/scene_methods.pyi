@@ -40,6 +40,7 @@ from .support import Clamp, Motion, Pin, Tie
 from .surface import Surface
 from .velocity_table import VelocityTable
 from .wave import Wave
+from .working_curve import WorkingCurve
 
 Numbers: TypeAlias = Sequence[float] | np.ndarray
 Points: TypeAlias = Sequence[Numbers] | np.ndarray
@@ -181,6 +182,7 @@ class SceneMethods(SceneData):
         length: float | Sequence[float] | None = None,
         element: str = "cable8p",
         mass: bool = True,
+        temperature: float | None = None,
     ) -> Rope:
         """Add a Rope, which see."""
 
@@ -358,6 +360,20 @@ class SceneMethods(SceneData):
         name: str | None = None,
     ) -> WireFriction:
         """Add a WireFriction, which see."""
+
+    def working_curve(
+        self,
+        cable: Named,
+        *,
+        permanent: float | None = None,
+        form: str = "linear",
+        bend: float = 0.0,
+        strain: Numbers | None = None,
+        force: Numbers | None = None,
+        highest_tension: float = 0.0,
+        name: str | None = None,
+    ) -> WorkingCurve:
+        """Add a WorkingCurve, which see."""
 
     def crossing(
         self,

@@ -156,7 +156,8 @@ def test_fast_changes_are_stiffer_with_a_relaxation():
     scene.relaxation("rope", stiffness=K, time=TAU, name="fast")
     wave = fu.Harmonic(amplitude=-amplitude, frequency=frequency, phase=np.pi / 2, offset=amplitude)
     scene.motion("rope", s=L, displacement=(wave, 0, 0))
-    run = scene.run(cycles / frequency, output_step=1 / (40 * frequency), integrator="genalpha", step=1 / (400 * frequency))
+    run = scene.run(cycles / frequency, output_step=1 / (40 * frequency), integrator="genalpha",
+                    step=1 / (400 * frequency))
     x = 2 * np.pi * frequency * TAU
     force = (run["worked.tension"].mean(axis=1) + run["fast.tension"].mean(axis=1))[-40:]
     lost = np.diff(run["energy.dissipated"][[-41, -1]])
