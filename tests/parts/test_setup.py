@@ -18,7 +18,7 @@ CEILINGS = {"paper51": (3230, 1200), "cable_car": (7130, 3720), "zip_line": (522
 """Calls of Python and C functions that it takes to make a scene and to set its run up, up to an eleventh above those
 counted; a ceiling moves up only on purpose.
 """
-RUN_CEILINGS = {"paper51": 1870}
+RUN_CEILINGS = {"paper51": 1950}
 """The same of a whole run with one of its results read, and with its notes."""
 
 

@@ -144,6 +144,14 @@ def given_values(space):
     assert rest["dropper.tension"] > 0
 
 
+def ice_that_falls(space):
+    run = space["drops"]
+    height = run["line.position"][..., 1]
+    assert abs(height[run.time < 1] - height[0]).max() < 1e-9, "it begins at rest"
+    bare, iced = height[:, 13:].mean(axis=1), height[:, :12].mean(axis=1)
+    assert bare[-1] > bare[0] + 1 and iced[-1] < iced[0]
+
+
 def passage(space):
     assert space["form"].lengths[:3] == pytest.approx([1.017, 0.896, 0.810], abs=2e-3)
     assert 100 < float(space["found"]["mean"][0]) < 125
@@ -176,6 +184,7 @@ AFTERWARDS = {("README.md", "First scene"): saved,
               ("runtime/README.md", "Scenes"): first_scene,
               (f"{SUBJECTS}model.md", "A choice"): chosen_model,
               (f"{SUBJECTS}cables.md", "Unequal elements"): unequal_elements,
+              (f"{SUBJECTS}cables.md", "Ice"): ice_that_falls,
               (f"{SUBJECTS}fluids.md", "A towed line"): towed_line,
               (f"{SUBJECTS}fluids.md", "A surface"): buoy,
               (f"{SUBJECTS}fluids.md", "Waves"): buoy_in_waves,
