@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from derivatives import error_by_drags
 from expectations import unaccounted
+from funicular.view.surfaces import placed_surface
 
 INTEGRATORS = ("genalpha", "energy", "explicit", "radau")
 G, WATER = 9.81, 1025.0
@@ -317,7 +318,7 @@ def test_pictures_show_the_surface_where_it_is_in_sight(tmp_path):
     scene.fluid("deep", density=1100, surface=-5000.0)
     run = scene.run(1.0, tol=1e-4, output_step=0.1)
     sea = {body.name: body for body in run.animation("falls").clips[0].bodies}["sea"]
-    corners = sea.shape["vertices"] + sea.position[0]
+    corners, _ = placed_surface(sea, 0, 0.0)
     assert np.ptp(corners[:, 1]) < 1e-12 and corners[0, 1] == pytest.approx(30)
     assert {body.name for body in run.animation("falls").clips[0].bodies} == {"buoy", "sea"}
     run.save_html(tmp_path / "page.html")

@@ -207,16 +207,16 @@ def test_a_bent_rope_follows_the_bilinear_loop(validated):
         quantity, unit = found["quantity"].rsplit(", ", 1)
         validated("Ropes with memory", "friction between wires: bending to and fro", quantity, found["reference"],
                   found["found"], unit=unit, scale=SLIP if unit == "N m" else None, bound=2e-4,
-                  source="bilinear loop", variant="genalpha")
+                  worst=unit == "N m", source="bilinear loop", variant="genalpha")
         assert found["energy"] < 3e-6, found
 
 
 @pytest.mark.parametrize("integrator", ["genalpha", "radau", "explicit"])
 def test_a_swinging_rope_loses_energy_between_its_wires(integrator):
     """All integrators agree; in space and in the plane alike."""
-    run = swinging().run(0.6, output_step=0.02, tol=1e-4, integrator=integrator)
+    run = swinging().run(0.6, output_step=0.02, tol=3e-5, integrator=integrator)
     assert np.ptp(energies(run)) < 1e-4 * np.ptp(run["energy.kinetic"])
-    planar = swinging("cable8p").run(0.6, output_step=0.02, tol=1e-4, integrator=integrator)
+    planar = swinging("cable8p").run(0.6, output_step=0.02, tol=3e-5, integrator=integrator)
     assert np.abs(run["wires.moment"] - planar["wires.moment"]).max() < 2e-3 * 0.05
     fine = swinging("cable8p").run(0.6, output_step=0.02, tol=1e-6, integrator="genalpha")
     assert run["energy.dissipated"][-1] == pytest.approx(fine["energy.dissipated"][-1], rel=2e-3)

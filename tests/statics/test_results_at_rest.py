@@ -30,6 +30,7 @@ def of_supports() -> Scene:
     scene.spring("A", (1, 2, 0.2), stiffness=5.0, length=0.9, name="string")
     scene.fluid("air", density=1.2, velocity=(3, 0, 0))
     scene.drag("line", normal=1.0, name="wind")
+    scene.ice("link", thickness=0.01, name="rime")
     scene.relaxation("link", stiffness=50.0, time=0.1, name="viscosity")
     scene.cable("fibres", start=(0, 0, 2), end=(0, -1, 2), elements=2, element="cable12", membrane="tabulated",
                 section=THIN.remade({"tension_table": TensionTable(strain=(0, 0.1), force=(0, 1e3))}), material=SOFT)

@@ -1,4 +1,4 @@
-/* Public: ice on a cable, whose thickness is a signal: couplings/ice/ice.c. */
+/* Ice on a cable, whose thickness is a signal: couplings/ice/ice.c. */
 #ifndef FUNICULAR_COUPLINGS_ICE_ICE_H
 #define FUNICULAR_COUPLINGS_ICE_ICE_H
 
