@@ -14,6 +14,7 @@ import numpy as np
 
 from ..catalogue import families
 from ..codegen.family import CouplingFamily, Family, PointLawFamily, SlideFamily
+from ..codegen.piecewise import NUMERICAL, CubicIntegral, CubicSlope, CubicValue
 from ..codegen.program import Argument, Program
 from ..verify import numbers as verify_numbers
 from ..verify.samples import states
@@ -371,7 +372,17 @@ def working_curve_scope(name: str) -> Scope:
     """Return the scope of working curves of a rope."""
     return Scope(families()[name], (Symbol(r"\mathbf{a}", "a", column), Symbol("e", "e", number),
                                     Symbol("H", "highest", number), Symbol("p", "permanent", number),
-                                    Symbol("n", "n", number)))
+                                    Symbol("n", "n", number)), constants=_of_tables)
+
+
+def _of_tables(scope: Scope, state: State) -> dict[str, Any]:
+    """Return integrals, values and slopes of the tables of a working curve at their places."""
+    integral, value, slope = (NUMERICAL[kind.c_name] for kind in (CubicIntegral, CubicValue, CubicSlope))
+    first, shape, e, H, p = (state[name] for name in ("first", "shape", "e", "highest", "permanent"))
+    x = (e - p * H) / ((1 - p) * H)
+    return {"N_{H}": value(first, H), "N_{e}": value(first, e), "W_{e}": integral(first, e),
+            r"N_{e}^{\prime}": slope(first, e), "g": value(shape, x), r"g^{\prime}": slope(shape, x),
+            "G": integral(shape, x)}
 
 
 def drag_scope(name: str) -> Scope:
