@@ -416,7 +416,7 @@ def _wave_symbols() -> tuple[Symbol, ...]:
     """Return the symbols of a wave at a point."""
     return (Symbol(r"\mathbf{x}", "place", column), Symbol(r"\tau", "time", number), Symbol(r"\mathbf{k}", "k", column),
             *(Symbol(s, "wave", entry(k)) for k, s in enumerate(("a", r"\omega", r"\varphi", "k", "q"))),
-            Symbol(r"\gamma", "cosine", number), Symbol(r"\sigma", "sine", number), Symbol("E", "grow", number),
+            Symbol(r"\gamma", "cosine", number), Symbol(r"\sigma", "sine", number), Symbol("P", "grow", number),
             Symbol("z", "height", number), Symbol(r"\eta", "eta", number), Symbol(r"\dot{\eta}", "eta_t", number),
             Symbol(r"\boldsymbol{\eta}_{r}", "eta_r", column), Symbol("D", "inv_depth", number),
             Symbol(r"\dot{Z}", "Z_t", number), Symbol(r"\mathbf{Z}_{r}", "Z_r", column))
