@@ -24,7 +24,7 @@ def free_to_vibrate(scene: fu.Scene) -> bool:
     """
     driven = any(joint.is_driven for joint in scene.joints.values()) or any(
         slide.is_driven or slide.friction is not None for slide in scene.slides.values())
-    grows = any(cable.growth.signal is not None for cable in scene.cables.values())
+    grows = any(cable.grows for cable in scene.cables.values())
     return not (driven or grows or scene.branches or scene.fluids or scene.motions or scene.contacts or scene.crossings)
 
 
