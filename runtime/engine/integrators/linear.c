@@ -23,6 +23,7 @@
 #define MAX_CONTRACTION 0.9         /* largest contraction for the estimate of the remaining error */
 #define LEFT_SHARE 0.5              /* of the permitted error of a step: its change by an iteration that is left out */
 #define ROUNDING_FACTOR 100.0       /* times the rounding of positions: a change that is not rounding */
+#define STEPS_PER_ESTIMATE 8        /* of a fixed size: an estimate of the error costs as much as a solution */
 #define ROWS_PER_ESTIMATE 8         /* an estimate of the model's error costs as much as several steps */
 #define SHORT_STEP_SHARE 0.1        /* of the usual step: a shorter one keeps its initial a, as in genalpha.c */
 
@@ -225,9 +226,10 @@ static int step(fu_run *run, double h)
     return iterate(run, &w, h);
 }
 
-/* Returns the local error of positions, m, as genalpha.c does. */
+/* Returns the local error of positions, m, as genalpha.c does; in steps of a fixed size now and then. */
 static double error(fu_run *run, double h)
 {
+    if (run->fixed_step > 0.0 && run->statistics.steps % STEPS_PER_ESTIMATE) return run->last_error;
     const fu_linear_space w = fu_linear_space_of(run);
     const double factor = h * h * fu_alpha_error_factor(run);
     for (int i = 0; i < run->model->n_dof; ++i)

@@ -24,9 +24,6 @@
 #define MAX_CUTS 4
 /* of the error permitted over the run: largest error of the history of friction in one step */
 #define HISTORY_ERROR_SHARE 0.15
-/* of a fixed size: an estimate of the error costs about as much as an iteration, and has no part in their size */
-#define STEPS_PER_ESTIMATE 8
-#define MIN_ESTIMATED 0.5 /* of a fixed step: a shorter one has a smaller error */
 /* of the intended step: next step after one whose event was not found */
 #define MISSED_EVENT_FACTOR 0.5
 
@@ -120,15 +117,6 @@ static double error_of(fu_run *run, double h)
                            pow(carried, 0.5 * run->order));
 }
 
-/* Returns whether the error of a step is estimated: of a fixed size at the start and now and then, and not of a shorter
- * remainder; the others are taken for as large as the last one. */
-static int is_estimated(const fu_run *run, double h)
-{
-    const long steps = run->statistics.steps;
-    return is_adaptive(run) || steps < STEPS_PER_ESTIMATE ||
-           (steps % STEPS_PER_ESTIMATE == 0 && h > MIN_ESTIMATED * run->fixed_step);
-}
-
 /* Resets couplings to their state in `now` for the rest of the step. */
 static void refuse(fu_run *run, trial *t)
 {
@@ -157,7 +145,7 @@ static int attempt(fu_run *run, trial *t)
         refuse(run, t);
         return 0;
     }
-    t->error = is_estimated(run, t->h) ? error_of(run, t->h) : run->last_error;
+    t->error = error_of(run, t->h);
     t->ratio = t->error / allowed;
     t->changes = fu_count_changes(run);
     t->deferred = run->integrator->quadrature ? fu_count_deferred(run) : 0;
