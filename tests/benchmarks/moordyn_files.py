@@ -97,7 +97,7 @@ def theirs(case: str, folder: Path) -> np.ndarray:
 
 def main() -> None:
     """Print the table."""
-    given = arguments(__doc__, moordyn=(0, "1: run MoorDyn again"))
+    given = arguments(__doc__, moordyn=(0, "1: run MoorDyn again", 0))
     warnings.simplefilter("ignore", fu.FunicularWarning)
     rows = []
     for case, known in MOORDYN.items():
