@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from difflib import get_close_matches
 from typing import Any
 
 MAX_SHOWN_LENGTH = 150
@@ -112,6 +111,8 @@ def shown_path(path: str | os.PathLike[str]) -> str:
 
 def near(name: str, known: Iterable[str]) -> str:
     """Return the remedy for an unknown name: the nearest known name, or all known names."""
+    from difflib import get_close_matches  # errors alone need it, and each import would compile its expressions
+
     known = list(known)
     if len(str(name)) <= MAX_SHOWN_LENGTH and (matches := get_close_matches(str(name), known, n=1)):
         return f'did you mean "{matches[0]}"?'

@@ -31,7 +31,8 @@ def parameters_of(kind: "type[Part]") -> list[inspect.Parameter]:
 
     None stands for a default that is not fixed.
     """
-    fields = {keyword: kind.model_fields[name] for keyword, name in kind.keywords().items()}
+    known = kind.model_fields  # pydantic takes a while for each look
+    fields = {keyword: known[name] for keyword, name in kind.keywords().items()}
     others = [name for name in fields if name not in kind.positional]
     others.sort(key=lambda name: (not fields[name].is_required(), name == "name"))
     return [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=_default(fields[name]))

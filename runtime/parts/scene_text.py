@@ -26,14 +26,14 @@ from .schemas import FileEntry
 from .settings import EquilibriumSettings, RelaxationSettings, RunSettings
 
 Directory = str | os.PathLike[str]
-BARE = re.compile(r"[A-Za-z0-9_-]+")
+BARE = r"[A-Za-z0-9_-]+"
 """A key without quotes."""
 SETTINGS = {"run": RunSettings, "equilibrium": EquilibriumSettings, "relax": RelaxationSettings}
 OF_ALL = ("gravity", "temperature")
 """Entries of a scene as a whole."""
 TABLES = (*OF_ALL, *PARTS, *SETTINGS)
 
-DOTTED = re.compile(r"""\.[ \t]*+(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+(?=\.)""")
+DOTTED = r"""\.[ \t]*+(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+(?=\.)"""
 """A part in the middle of a key with dots."""
 MAX_KEY_PARTS = 100
 """Keys of scene files have three."""
@@ -82,7 +82,7 @@ def read(text: str, origin: str, new: Callable[..., S], directory: Directory = "
 def _check_depth(text: str, origin: str) -> None:
     """Raise SceneError for very long keys: time and memory of tomllib grow with the square of their parts."""
     depth = end = 0
-    for found in DOTTED.finditer(text):
+    for found in re.finditer(DOTTED, text):
         depth = depth + 1 if found.start() == end else 1
         end = found.end()
         if depth > MAX_KEY_PARTS:
@@ -280,7 +280,8 @@ def plain_data(value: Any) -> Any:
 
 
 def _lines(table: dict[str, Any]) -> list[str]:
-    return [f"{name if BARE.fullmatch(name) else as_toml(name)} = {as_toml(value)}" for name, value in table.items()]
+    return [f"{name if re.fullmatch(BARE, name) else as_toml(name)} = {as_toml(value)}"
+            for name, value in table.items()]
 
 
 def as_toml(value: Any) -> str:

@@ -26,7 +26,7 @@ from .section_forces.components import labels
 from .section_forces.forces import GLOBAL, along_ground, cut_forces
 from .shape_functions import on_axis
 
-PLACE = re.compile(r"(?P<cable>[^@.]+)@(?P<s>[-+0-9.eE]+?)\.(?P<rest>[A-Za-z_].*)")
+PLACE = r"(?P<cable>[^@.]+)@(?P<s>[-+0-9.eE]+?)\.(?P<rest>[A-Za-z_].*)"
 """The name of a value at a place of a cable."""
 
 
@@ -129,7 +129,7 @@ def target_of(state: Equilibrium, name: str) -> Target:
         value = np.asarray(state.quantities[result])
         _check_component(where, value.shape == (3,), value.ndim == 0, component)
         return target
-    if (place := PLACE.fullmatch(result)) is None or place["cable"] not in state.scene.cables:
+    if (place := re.fullmatch(PLACE, result)) is None or place["cable"] not in state.scene.cables:
         raise SceneError(where, "is no value of the state of rest", f"{near(result, state.quantities)}, or write such "
                          'as "wire@2.5.position.y", of a point of a cable')
     cable, quantity = state.scene.cables[place["cable"]], place["rest"]

@@ -73,8 +73,10 @@ def calls_of(code: str) -> int:
 
 
 def test_most_of_its_work_is_that_of_numpy_and_pydantic():
-    """The ratio is 1.4 in seconds, which vary, and 1.47 in calls, which do not."""
-    assert calls_of("import funicular") < 1.5 * calls_of(NEEDED)
+    """The ratio is 1.4 in seconds, which vary, and 1.38 to 1.50 in calls, by what else is installed: the search for
+    modules and for plugins of pydantic is in both.
+    """
+    assert calls_of("import funicular") < 1.55 * calls_of(NEEDED)
 
 
 def test_it_brings_modules_of_numpy_and_of_python_alone():
