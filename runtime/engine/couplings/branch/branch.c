@@ -8,6 +8,7 @@
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/accelerator.h"
+#include "couplings/common/attachments.h"
 #include "couplings/common/stick_friction.h"
 
 #include <math.h>
@@ -36,14 +37,10 @@ static int measures_of(int dim)
 static void slopes_at(const fu_model *model, const fu_branch *branch, int k, const double *q, double *ab)
 {
     const fu_cable *cable = &model->cables[branch->cable];
-    const int dim = model->dim, n = cable->coordinates / dim;
+    const int dim = model->dim, all = cable->coordinates, at = k * (all / dim);
     const double *e = q + fu_element_entry(cable, branch->element);
-    memset(ab, 0, sizeof(double[6]));
-    for (int v = 0; v < n; ++v)
-        for (int d = 0; d < dim; ++d) {
-            ab[d] += branch->N_x[k * n + v] * e[v * dim + d];
-            ab[dim + d] += branch->N_xx[k * n + v] * e[v * dim + d];
-        }
+    fu_interpolate(dim, all, branch->N_x + at, e, ab);
+    fu_interpolate(dim, all, branch->N_xx + at, e, ab + dim);
 }
 
 static void unit_tangent(int dim, const double *a, double *i)

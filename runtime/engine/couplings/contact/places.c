@@ -115,15 +115,10 @@ void fu_contact_place(const fu_model *model, const fu_contact *contact, const fu
         return;
     }
     const fu_cable *cable = &model->cables[contact->cable];
-    const int n = cable->coordinates / dim;
-    const double *N = fu_contact_shapes(contact, n, element, point),
-                 *q = state->q + fu_contact_first(model, contact, element),
-                 *v = state->v + fu_contact_first(model, contact, element);
-    for (int k = 0; k < n; ++k)
-        for (int d = 0; d < dim; ++d) {
-            out->r[d] += N[k] * q[k * dim + d];
-            out->v[d] += N[k] * v[k * dim + d];
-        }
+    const int all = cable->coordinates, first = fu_contact_first(model, contact, element);
+    const double *N = fu_contact_shapes(contact, all / dim, element, point);
+    fu_interpolate(dim, all, N, state->q + first, out->r);
+    fu_interpolate(dim, all, N, state->v + first, out->v);
 }
 
 /* Adds a force on a point of a cable, times its weight, to the left side of the equations of motion. */

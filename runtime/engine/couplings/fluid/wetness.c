@@ -217,12 +217,9 @@ static void above_waves(const fu_model *model, const fu_drag *drag, double t, in
                         const double *e, double *height, double *slope)
 {
     const int dim = model->dim;
-    double r[3] = {0.0}, r_x[3] = {0.0};
-    for (int k = 0; k < n; ++k)
-        for (int d = 0; d < dim; ++d) {
-            r[d] += N[k] * e[k * dim + d];
-            r_x[d] += N_x[k] * e[k * dim + d];
-        }
+    double r[3], r_x[3];
+    fu_interpolate(dim, n * dim, N, e, r);
+    fu_interpolate(dim, n * dim, N_x, e, r_x);
     const fu_elevation at = fu_elevation_at(model, drag, t, r);
     *height = height_above_still_level(model, drag, r) - at.eta;
     *slope = fu_dot(dim, drag->flow.up, r_x) - fu_dot(dim, at.slope, r_x);

@@ -7,6 +7,7 @@
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 #include "couplings/common/accelerator.h"
+#include "couplings/common/attachments.h"
 
 #include <math.h>
 #include <string.h>
@@ -27,11 +28,8 @@ static double *highest_of(const fu_working_curve *curve, const fu_state *state)
 static void slope_at(const fu_model *model, const fu_working_curve *curve, int k, const double *q, double *a)
 {
     const fu_cable *cable = &model->cables[curve->cable];
-    const int dim = model->dim, n = cable->coordinates / dim;
-    const double *e = q + fu_element_entry(cable, curve->element);
-    memset(a, 0, sizeof(double[3]));
-    for (int v = 0; v < n; ++v)
-        for (int d = 0; d < dim; ++d) a[d] += curve->N_x[k * n + v] * e[v * dim + d];
+    const int dim = model->dim, all = cable->coordinates;
+    fu_interpolate(dim, all, curve->N_x + k * (all / dim), q + fu_element_entry(cable, curve->element), a);
 }
 
 /* A point at a state: slope, strain, the highest strain with this one; the change of the force, its derivative, and the
