@@ -16,6 +16,7 @@ COUPLING_TYPES: tuple[str, ...]
 OUTPUTS: dict[str, dict[str, Output]]
 SLACK_STRAIN: float
 MAX_HARD_CONTACTS: int
+MAX_WAVES: int
 CROSSING_STICK: int
 FRICTION_MARK: int
 SPAN_BEGIN: int

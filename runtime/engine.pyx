@@ -120,6 +120,8 @@ SLACK_STRAIN = FU_SLACK_STRAIN
 """Least compression of a slack element in its middle."""
 MAX_HARD_CONTACTS = FU_MAX_HARD_CONTACTS
 """Largest number of points in hard contact of a scene."""
+MAX_WAVES = FU_MAX_WAVES
+"""Largest number of waves on a fluid."""
 CROSSING_STICK, FRICTION_MARK = FU_CROSSING_STICK, FU_FRICTION_MARK
 SPAN_BEGIN, SPAN_STRETCH = FU_SPAN_BEGIN, FU_SPAN_STRETCH
 """Numbers that a state keeps of friction: of a crossing that sticks, of a point of a contact."""

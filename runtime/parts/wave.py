@@ -7,6 +7,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field
 
 from ..base.rotations import unit
+from ..engine import MAX_WAVES
 from .part import Part
 from .validation import Vector, direction, finite, items, positive, shown
 
@@ -14,7 +15,6 @@ PEAK_WIDTHS = 0.07, 0.09
 """Of JONSWAP's peak, below and above it, relative to its frequency."""
 SPECTRUM = 0.4, 6.0
 """Frequencies of the spectrum over that of its peak: beyond them is less than 1e-3 of the energy."""
-MAX_COMPONENTS = 1000
 Direction = Annotated[Vector, direction()]
 
 
@@ -62,13 +62,13 @@ class Wave(Part):
 
 
 def _listed(value: Any) -> list[Any]:
-    if (given := items(value, 1)) is None or len(given) > MAX_COMPONENTS:
-        raise ValueError(f"must be a list of 1 to {MAX_COMPONENTS} waves, got {shown(value)}",
+    if (given := items(value, 1)) is None or len(given) > MAX_WAVES:
+        raise ValueError(f"must be a list of 1 to {MAX_WAVES} waves, got {shown(value)}",
                          "give them as waves=[fu.Wave(...), ...], or fu.jonswap(...)")
     return given
 
 
-Waves = Annotated[tuple[Wave, ...], Field(json_schema_extra={"minItems": 1, "maxItems": MAX_COMPONENTS}),
+Waves = Annotated[tuple[Wave, ...], Field(json_schema_extra={"minItems": 1, "maxItems": MAX_WAVES}),
                   BeforeValidator(_listed)]
 
 
@@ -92,8 +92,8 @@ def jonswap(*, significant_height: float, peak_period: float, peakedness: float 
     >>> len(sea), round(sum(wave.amplitude**2 / 2 for wave in sea), 12)
     (50, 0.25)
     """
-    if not (peakedness >= 1 and 1 <= components <= MAX_COMPONENTS):
-        raise ValueError(f"jonswap: peakedness must be at least 1 and components from 1 to {MAX_COMPONENTS}, got "
+    if not (peakedness >= 1 and 1 <= components <= MAX_WAVES):
+        raise ValueError(f"jonswap: peakedness must be at least 1 and components from 1 to {MAX_WAVES}, got "
                          f"{peakedness} and {components}")
     x = np.linspace(*SPECTRUM, 20001)  # frequency over that of the peak
     width = np.where(x <= 1, *PEAK_WIDTHS)

@@ -40,7 +40,7 @@ typedef struct {
  * reciprocal of the depth, 0 for infinite depth; the sum of the amplitudes, which no elevation exceeds, m. move_fluid:
  * zero in the fluid above the surface. */
 #define FU_WAVE_NUMBERS 5
-#define FU_MAX_WAVES 1000 /* runtime/parts/wave.py */
+#define FU_MAX_WAVES 1000
 typedef struct {
     int n_waves, move_fluid;
     const double *wave_vectors, *wave_numbers;
