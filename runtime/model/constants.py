@@ -35,8 +35,7 @@ def constants(cable: Cable, axial: float = 1.0, change: Callable[[np.ndarray], n
     stress-free lengths of the pieces, by default those at t = 0.
     """
     growth = [each.start for each in cable.growth] if growth is None else growth
-    ends = [piece.end - piece.first for piece in cable.uniform_pieces]
-    factors, reference = np.repeat(growth, ends), cable.reference
+    factors, reference = cable.repeated(growth), cable.reference
     each_own = (cable.is_curved and reference is not None) or not cable.mesh.is_even
     lengths = factors * cable.mesh.all_lengths if each_own else growth[0] * cable.mesh.lengths
     if reference is not None and any(factor != 1.0 for factor in growth):
@@ -62,20 +61,18 @@ def series(cable: Cable) -> np.ndarray:
     First come the middle of the factors, the inverse of half their range, and the step of differences by a factor,
     three of which lie beyond the bounds.
     """
+    chebyshev = np.polynomial.chebyshev
     step = [DIFFERENCE * driven.least for driven in cable.growth]
     low = np.array([driven.least - 4 * h for driven, h in zip(cable.growth, step, strict=True)])
     high = np.array([driven.greatest + 4 * h for driven, h in zip(cable.growth, step, strict=True)])
+    middle, half = (low + high) / 2, (high - low) / 2
     pole = float(((low + high - 2 * POLE * low) / (high - low)).min())
     terms = MORE_TERMS + int(np.log(1 / np.finfo(float).eps) / np.log(pole + np.sqrt(pole**2 - 1)))
-    angles = np.pi * (np.arange(terms) + 0.5) / terms
-    each = np.array([constants(cable, growth=((low + high) / 2 + (high - low) / 2 * x).tolist())
-                     for x in np.cos(angles)])
-    weights = 2 / terms * np.cos(np.outer(np.arange(terms), angles))
-    weights[0] /= 2
-    found = np.tensordot(weights, each, 1)
-    head = np.stack([(low + high) / 2, 2 / (high - low), step], axis=1)
-    ends = [piece.end - piece.first for piece in cable.uniform_pieces]
-    head = head[:1] if found.shape[1] == 1 else np.repeat(head, ends, axis=0)
+    places = chebyshev.chebpts1(terms)
+    each = np.array([constants(cable, growth=(middle + half * x).tolist()) for x in places])
+    found = chebyshev.chebfit(places, each.reshape(terms, -1), terms - 1).reshape(each.shape)
+    head = np.stack([middle, 1 / half, step], axis=1)
+    head = head[:1] if each.shape[1] == 1 else cable.repeated(head)
     return np.concatenate([head, np.moveaxis(found, 1, 0).reshape(len(head), -1)], axis=1)
 
 

@@ -164,9 +164,8 @@ class CableModel:
         if self.growth_series is None:
             return np.asarray(self.A[element % len(self.A)])
         middle, scale, _, *series = self.growth_series[element % len(self.growth_series)]
-        angle = np.arccos(np.clip((growth - middle) * scale, -1.0, 1.0))
         terms = np.reshape(series, (-1, self.A.shape[1]))
-        return np.asarray(np.cos(angle[:, None] * np.arange(len(terms))) @ terms)
+        return np.asarray(np.polynomial.chebyshev.chebval((growth - middle) * scale, terms).T)
 
     def strained(self, q: np.ndarray) -> np.ndarray:
         """Return `nodal` over the growth factor: the stretch of the centreline is the length of its slope."""

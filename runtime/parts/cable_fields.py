@@ -4,7 +4,7 @@ import os
 from collections.abc import Callable
 from functools import cached_property
 from itertools import accumulate, pairwise
-from typing import Annotated, Any, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import numpy as np
 from pydantic import AfterValidator, Field, PrivateAttr, ValidationInfo
@@ -23,6 +23,9 @@ from .section import AnySection, Section, outer_radius_of
 from .signal import Signal, varying
 from .thermal import TEMPERATURE
 from .validation import Count, Name, Points, Vector, one_of, positive, shown, xyz
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike  # for type checkers alone
 
 T = TypeVar("T")
 
@@ -144,8 +147,11 @@ class CableFields(Part):
 
     def of_elements(self, of_piece: Callable[[UniformPiece], float]) -> np.ndarray:
         """Return (elements,): a number of the piece of each element."""
-        pieces = self.uniform_pieces
-        return np.repeat([of_piece(piece) for piece in pieces], [piece.end - piece.first for piece in pieces])
+        return self.repeated([of_piece(piece) for piece in self.uniform_pieces])
+
+    def repeated(self, values: "ArrayLike") -> np.ndarray:
+        """Return values (pieces, ...) of the pieces for each of their elements, (elements, ...)."""
+        return np.repeat(values, [piece.end - piece.first for piece in self.uniform_pieces], axis=0)
 
     @property
     def kind_of_element(self) -> ElementKind:

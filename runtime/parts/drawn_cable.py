@@ -81,8 +81,7 @@ class DrawnCable(Fields):
 
     def growth_at(self, time: np.ndarray) -> np.ndarray:
         """Return (T, elements): `growth` of its elements at times (T,) in s."""
-        ends = [piece.end - piece.first for piece in self.uniform_pieces]
-        return np.repeat(np.stack([each.at(time) for each in self.growth], axis=1), ends, axis=1)
+        return self.repeated([each.at(time) for each in self.growth]).T
 
     def driven(self) -> dict[str, Driven]:
         """Return the quantities that signals prescribe, by name: the growth of its pieces, or of all of them if it is

@@ -47,11 +47,11 @@ def by_temperature(model: CableModel, cable: Cable, q: np.ndarray) -> np.ndarray
     expansion = [piece.material.thermal_expansion or 0.0 for piece in cable.uniform_pieces]
     if not (largest := max(map(abs, expansion))):
         return np.zeros(math.prod(model.shape))
-    step, ends = DIFFERENCE_STEP / largest, [piece.end - piece.first for piece in cable.uniform_pieces]
+    step = DIFFERENCE_STEP / largest
 
     def warmer(change: float) -> np.ndarray:
         growth = [each.start + change * own for each, own in zip(cable.growth, expansion, strict=True)]
-        return elastic_force(model, constants(cable, growth=growth), q, np.repeat(growth, ends))
+        return elastic_force(model, constants(cable, growth=growth), q, cable.repeated(growth))
 
     return np.asarray((warmer(step) - warmer(-step)) / (2 * step))
 
