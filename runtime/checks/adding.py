@@ -37,7 +37,15 @@ from .crossing_placement import placed_crossing
 from .drag_placement import placed_drag, placed_fluid
 from .ice_placement import placed_ice
 from .joint_placement import placed_joint
-from .placement import placed_between, placed_event, placed_mass, placed_point_force, placed_support, placed_tie
+from .placement import (
+    placed_between,
+    placed_event,
+    placed_mass,
+    placed_point_force,
+    placed_support,
+    placed_tie,
+    warmed,
+)
 from .rope_placement import check_beside_ropes, placed_rope
 from .slide_placement import placed_slide
 from .whole_scene import check_plane
@@ -46,7 +54,7 @@ from .working_curve_placement import placed_working_curve
 
 def placed_cable(scene: SceneData, cable: Cable) -> Cable:
     """Return the cable, drawn as it hangs, checked to have the dimension and the plane of the scene."""
-    cable = _warmed(scene, cable.hanging_under(scene.gravity))
+    cable = warmed(scene, cable.hanging_under(scene.gravity))
     for other in scene.cables.values():
         if other.dim != cable.dim:
             word = {2: "planar", 3: "spatial"}
@@ -64,18 +72,6 @@ def placed_cable(scene: SceneData, cable: Cable) -> Cable:
         others.put(cable)
         check_plane(others)
     return cable
-
-
-def _warmed(scene: SceneData, cable: Cable) -> Cable:
-    """Return a cable with the temperature of the scene where it has none. Raises SceneError."""
-    if cable.temperature is not None or scene.temperature is None:
-        return cable
-    warm = cable.completed({"temperature": scene.temperature})
-    try:
-        warm.check_growth()
-    except ValueError as error:
-        raise SceneError(cable.where, *error.args) from None
-    return warm
 
 
 def _lie_in_one_plane(cable: Cable, other: Cable) -> bool:

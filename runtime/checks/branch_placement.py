@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from ..errors import SceneError, near
+from ..errors import SceneError
 from ..parts.branch import Branch
 from ..parts.scene_data import SceneData
+from .placement import cable_of, check_strained_by_forces
 
 ELEMENTS = ("cable8p", "cable12")
 """Elements whose strain and curvature a branch takes at two points."""
@@ -18,9 +19,7 @@ def placed_branch(scene: SceneData, part: Branch) -> Branch:
             f'acts on cables alone, but "{part.cable}" is a rope, through whose elements the material moves',
             "take a cable",
         )
-    if part.cable not in scene.cables:
-        raise SceneError(part.where, f'there is no cable "{part.cable}"', near(part.cable, scene.cables))
-    cable = scene.cables[part.cable]
+    cable = cable_of(scene, part.cable, part.where)
     if cable.library is not None or cable.element not in ELEMENTS:
         raise SceneError(
             part.where,
@@ -34,12 +33,7 @@ def placed_branch(scene: SceneData, part: Branch) -> Branch:
             f"{cable.where} resists tension alone, and a branch would push",
             'take the membrane "full" or "assumed"',
         )
-    if cable.temperature is not None or cable.grows:
-        raise SceneError(
-            part.where,
-            f"{cable.where} has a temperature or a rest_length that changes, which the branch would take for strain",
-            "leave it out",
-        )
+    check_strained_by_forces(cable, part.where, "branch")
     if part.bends and cable.is_curved:
         raise SceneError(
             part.where,

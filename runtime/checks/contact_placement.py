@@ -25,7 +25,7 @@ from ..parts.surface_shapes import HeightField
 from ..parts.validation import show
 from .frames import plane_normal
 from .ice_placement import check_beside_ice
-from .placement import check_has_mass, node_at
+from .placement import check_between, check_has_mass
 
 WEIGHT_PENETRATION = 0.01
 """Penetration under the weight with the default stiffness, as a fraction of the radius."""
@@ -171,9 +171,7 @@ def _start_of(scene: SceneData, contact: Contact, last: _Start | None) -> _Start
     radius: np.ndarray | float = contact.radius or 0.0
     if contact.a in scene.cables:
         cable = scene.cables[contact.a]
-        s = cable.samples(SAMPLES)
-        if contact.start is not None or contact.stop is not None or contact.radius is None:
-            s, radius = _samples(contact, cable)
+        s, radius = _samples(contact, cable)
         drawn = cable.points_at(s)
     elif contact.a in scene.ropes:
         rope = scene.ropes[contact.a]
@@ -205,9 +203,7 @@ def _of_cable(scene: SceneData, contact: Contact, cable: Cable) -> Contact:
     if contact.points is not None:
         raise SceneError(contact.where, f'acts along cable "{cable.name}" and takes no points', "leave points out")
     check_beside_ice(scene, contact, contact.a)
-    for name in ("start", "stop"):
-        if (s := getattr(contact, name)) is not None:
-            node_at(scene, contact.a, contact.where, s, name)
+    check_between(scene, contact, contact.a)
     radii = [contact.radius_of(piece.section) for piece in contact.stretches(cable)]
     if None in radii:
         raise SceneError(contact.where, "radius is missing, which does not follow from the section of the cable",

@@ -18,7 +18,7 @@ from ..parts.validation import LENGTH_TOLERANCE, show
 from ..parts.velocity_table import VelocityTable
 from .frames import draws_section
 from .ice_placement import check_beside_ice
-from .placement import check_has_mass, node_at, placed_attachment
+from .placement import check_between, check_has_mass, placed_attachment
 
 PLACES = 65
 """Number of points of a cable that are checked."""
@@ -180,11 +180,7 @@ def _check_cable(scene: SceneData, drag: Drag) -> None:
     """Raise SceneError for a drag that its cable does not admit."""
     _refuse(drag, "cable")
     cable = scene.cables[drag.on]
-    for name in ("start", "stop"):
-        if (s := getattr(drag, name)) is not None:
-            node_at(scene, drag.on, drag.where, s, name)
-    if drag.start is not None and drag.stop is not None and not drag.start < drag.stop:
-        raise SceneError(drag.where, f"stop must be beyond start {show(drag.start, 'm')}, got {show(drag.stop, 'm')}")
+    check_between(scene, drag, drag.on)
     _check_added_mass_of_line(drag, cable)
     _check_alone(scene, drag, cable)
     if drag.lift != 0 and cable.dim == 2:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..errors import SceneError, near
+from ..errors import SceneError
 from ..parts.contact import Contact
 from ..parts.crossing import Crossing
 from ..parts.drag import Drag
@@ -11,8 +11,7 @@ from ..parts.ice import Ice
 from ..parts.part import Part
 from ..parts.scene_data import SceneData
 from ..parts.stretches import overlap
-from ..parts.validation import show
-from .placement import node_at
+from .placement import cable_of, check_between
 
 
 def placed_ice(scene: SceneData, part: Ice) -> Ice:
@@ -20,14 +19,9 @@ def placed_ice(scene: SceneData, part: Ice) -> Ice:
     if part.cable in scene.ropes:
         raise SceneError(part.where, f'grows on cables alone, but "{part.cable}" is a rope, whose material moves over '
                          "sheaves", "take a cable")
-    if part.cable not in scene.cables:
-        raise SceneError(part.where, f'there is no cable "{part.cable}"', near(part.cable, scene.cables))
-    for name in ("start", "stop"):
-        if (s := getattr(part, name)) is not None:
-            node_at(scene, part.cable, part.where, s, name)
-    if part.start is not None and part.stop is not None and not part.start < part.stop:
-        raise SceneError(part.where, f"stop must be beyond start {show(part.start, 'm')}, got {show(part.stop, 'm')}")
-    if None in [part.diameter_of(piece.section) for piece in part.stretches(scene.cables[part.cable])]:
+    cable = cable_of(scene, part.cable, part.where)
+    check_between(scene, part, part.cable)
+    if None in [part.diameter_of(piece.section) for piece in part.stretches(cable)]:
         raise SceneError(part.where, "diameter is missing, which the section does not tell",
                          "give diameter, in m: that of the cable under the ice")
     if other := next((each for each in scene.ices.values() if _on_same(each, part)), None):

@@ -12,7 +12,10 @@ from ..errors import FunicularWarning, SceneError, near
 from ..kernels.elements import built_in
 from ..parts.attachment import Attachment
 from ..parts.cable import Cable
+from ..parts.contact import Contact
+from ..parts.drag import Drag
 from ..parts.event import Event
+from ..parts.ice import Ice
 from ..parts.load import DistributedForce, Force, Moment
 from ..parts.locations import Node, grips, joined, node_of, point_of, support_of
 from ..parts.modal_body import ModalBody
@@ -27,6 +30,7 @@ from ..parts.validation import LENGTH_TOLERANCE, show
 from .frames import plane_normal
 
 P = TypeVar("P", bound=Part)
+L = TypeVar("L", Cable, Rope)
 
 SUPPORTED = {"pin": "pinned", "clamp": "clamped", "motion": "moved as prescribed"}
 
@@ -47,11 +51,16 @@ def report(scene: SceneData, message: str, level: int = 5) -> None:
     warnings.warn(message, FunicularWarning, stacklevel=level)
 
 
-def cable_at(scene: SceneData, name: str, place: str, s: float, keyword: str = "s") -> Cable:
-    """Return the cable ``name``, on which ``s`` must lie."""
+def cable_of(scene: SceneData, name: str, place: str) -> Cable:
+    """Return the cable ``name``. Raises SceneError."""
     if name not in scene.cables:
         raise SceneError(place, f'there is no cable "{name}"', near(name, scene.cables))
-    cable = scene.cables[name]
+    return scene.cables[name]
+
+
+def cable_at(scene: SceneData, name: str, place: str, s: float, keyword: str = "s") -> Cable:
+    """Return the cable ``name``, on which ``s`` must lie."""
+    cable = cable_of(scene, name, place)
     if not -LENGTH_TOLERANCE * cable.length <= s <= (1 + LENGTH_TOLERANCE) * cable.length:
         raise SceneError(place, f"{keyword} must lie on the cable, in [0, {cable.length:.9g}] m, got {s:.9g} m")
     return cable
@@ -132,6 +141,34 @@ def _shears_the_end(a: Cable, s: float, b: Cable, at: float) -> bool:
     directors = [bool(cable.kind_of_element.director) for cable in (a, b)]
     return any(directors) and (not all(directors) or
                                float(np.linalg.norm(np.cross(a.axes_at(s)[0], b.axes_at(at)[0]))) > LENGTH_TOLERANCE)
+
+
+def check_between(scene: SceneData, part: Contact | Drag | Ice, name: str) -> None:
+    """Raise SceneError unless start and stop of what acts on a cable are nodes of it in this order."""
+    for keyword in ("start", "stop"):
+        if (s := getattr(part, keyword)) is not None:
+            node_at(scene, name, part.where, s, keyword)
+    if part.start is not None and part.stop is not None and not part.start < part.stop:
+        raise SceneError(part.where, f"stop must be beyond start {show(part.start, 'm')}, got {show(part.stop, 'm')}")
+
+
+def warmed(scene: SceneData, line: L) -> L:
+    """Return a cable or a rope with the temperature of the scene where it has none. Raises SceneError."""
+    if line.temperature is not None or scene.temperature is None:
+        return line
+    warm = line.completed({"temperature": scene.temperature})
+    try:
+        warm.check_growth()
+    except ValueError as error:
+        raise SceneError(line.where, *error.args) from None
+    return warm
+
+
+def check_strained_by_forces(cable: Cable, where: str, what: str) -> None:
+    """Raise SceneError for a cable whose stress-free length changes, which what stands at `where` takes for strain."""
+    if cable.temperature is not None or cable.grows:
+        raise SceneError(where, f"{cable.where} has a temperature or a rest_length that changes, which the {what} "
+                         "would take for strain", "leave it out")
 
 
 def placed_load(scene: SceneData, load: Force | DistributedForce | Moment) -> Part:

@@ -17,9 +17,10 @@ from ..parts.rope import Rope
 from ..parts.rope_route import MAX_LAYER, MAX_PLAUSIBLE_WRAP, DrawnRoute
 from ..parts.rope_route_space import fleet_angle, fleet_angles, groove_of
 from ..parts.scene_data import SceneData
+from ..parts.signal import Signal
 from ..parts.slide import Slide
 from ..parts.validation import show
-from .placement import placed_attachment, report
+from .placement import placed_attachment, report, warmed
 from .whole_scene import check_plane
 
 ON_ROPES = (Joint, PointForce, Slide, Load, Drag, Contact)
@@ -51,18 +52,11 @@ def placed_rope(scene: SceneData, rope: Rope) -> Rope:
 
 def _warmed(scene: SceneData, rope: Rope) -> Rope:
     """Return a rope with the temperature of the scene where it has none. Raises SceneError."""
-    if rope.temperature is not None or scene.temperature is None:
-        return rope
-    if not isinstance(scene.temperature, float):
+    if rope.temperature is None and isinstance(scene.temperature, Signal):
         raise SceneError(rope.where, "the temperature of the scene is a signal, but a rope takes a number alone: its "
                          "material runs through the spans by its stress-free length, which must not change",
                          "give the rope its own temperature in K, or let a drum pay out what it lengthens by")
-    warm = rope.completed({"temperature": scene.temperature})
-    try:
-        warm.check_growth()
-    except ValueError as error:
-        raise SceneError(rope.where, *error.args) from None
-    return warm
+    return warmed(scene, rope)
 
 
 def check_apart_from_ropes(scene: SceneData, part: Part) -> None:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..errors import SceneError, near
+from ..errors import SceneError
 from ..parts.cubic_segments import integral, value
 from ..parts.scene_data import SceneData
 from ..parts.tension_table import TensionTable
 from ..parts.validation import show
 from ..parts.working_curve import WorkingCurve
+from .placement import cable_of, check_strained_by_forces
 
 MEETING_TOLERANCE = 1e-3
 """Error of the last point of a measured curve against the table, as a fraction of its force."""
@@ -20,16 +21,12 @@ ROUNDING = 1e-9
 
 def placed_working_curve(scene: SceneData, part: WorkingCurve) -> WorkingCurve:
     """Return the working curve, checked to suit its cable. Raises SceneError."""
-    if part.cable not in scene.cables:
-        raise SceneError(part.where, f'there is no cable "{part.cable}"', near(part.cable, scene.cables))
-    cable = scene.cables[part.cable]
+    cable = cable_of(scene, part.cable, part.where)
     if not cable.gives_way or cable.traits.membrane != "tabulated":
         raise SceneError(part.where, f"needs the force of first loading, but {cable.where} has no table that begins at "
                          "strain 0", 'give its section a tension_table from strain 0 on, and the cable '
                          'membrane="tabulated"')
-    if cable.temperature is not None or cable.grows:
-        raise SceneError(part.where, f"{cable.where} has a temperature or a rest_length that changes, which the "
-                         "working curve would take for strain", "leave it out")
+    check_strained_by_forces(cable, part.where, "working curve")
     for other in scene.working_curves.values():
         if other.cable == part.cable and other is not part:
             raise SceneError(part.where, f"{cable.where} has {other.where} already", "leave one of them out")

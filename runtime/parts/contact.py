@@ -20,7 +20,6 @@ from .validation import (
     number,
     place_on,
     positive,
-    show,
     shown,
     vector3,
     within,
@@ -146,12 +145,6 @@ class Contact(Part):
     def _has_coulomb_friction(self) -> "Contact":
         if self.friction is not None:
             self.friction.check_coulomb()
-        return self
-
-    @model_validator(mode="after")
-    def _has_length(self) -> "Contact":
-        if self.start is not None and self.stop is not None and not self.start < self.stop:
-            raise ValueError(f"stop must be beyond start {show(self.start, 'm')}, got {show(self.stop, 'm')}")
         return self
 
     @model_validator(mode="after")
