@@ -5,7 +5,7 @@ The quantities are those in ``results`` of the parts. All are along the ground's
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field
 
 import numpy as np
@@ -16,6 +16,7 @@ from ..engine import OUTPUTS, Engine, outputs_by_name
 from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
 from ..parts.support import Support
+from .coupling import CouplingModel
 from .joints import JointFrictionModel
 from .kinds import COUPLINGS
 from .model import Model
@@ -180,29 +181,29 @@ def _point_forces(model: Model, at: States, kind: str, asked: Asked) -> Values:
 
 
 def _contacts(model: Model, at: States, kind: str, asked: Asked) -> Values:
-    """Return the outputs of contacts, of stretches of a cable together; arc-lengths are NaN without contact."""
+    """Return the results of contacts, of stretches of a cable together; a body has no arc-lengths."""
     found: Values = {}
-    numbers: dict[str, list[int]] = {}
-    for k, contact in enumerate(model.contacts):
-        numbers.setdefault(contact.name, []).append(k)
-    for name, own in numbers.items():
-        if not asked(name):
-            continue
-        if len(own) > 1:
+    none = np.full(len(at.q), np.nan)
+    for name, own in _by_name(model.contacts, asked).items():
+        if model.contacts[own[0]].cable >= 0:
             found[name] = _along_line(at, kind, own)
-            continue
-        outputs = at.outputs(kind, own[0])
-        length = outputs["touching"]
-        active = length > 0 if model.contacts[own[0]].cable >= 0 else np.zeros(len(length), dtype=bool)
-        ends = {end: np.where(active, outputs[end], np.nan) for end in ("first", "last")}
-        found[name] = outputs | ends | {"gap": np.full(len(length), np.nan)}
+        else:
+            found[name] = at.outputs(kind, own[0]) | {"first": none, "last": none, "gap": none}
     return found
 
 
 def _rope_contacts(model: Model, at: States, kind: str, asked: Asked) -> Values:
     """Return the results of contacts of ropes by name."""
-    return {name: _along_line(at, kind, [k for k, contact in enumerate(model.rope_contacts) if contact.name == name])
-            for name in dict.fromkeys(contact.name for contact in model.rope_contacts)}
+    return {name: _along_line(at, kind, own) for name, own in _by_name(model.rope_contacts, asked).items()}
+
+
+def _by_name(models: Sequence[CouplingModel], asked: Asked) -> dict[str, list[int]]:
+    """Return the numbers of models by the names of their parts that are asked for."""
+    numbers: dict[str, list[int]] = {}
+    for k, each in enumerate(models):
+        if asked(each.name):
+            numbers.setdefault(each.name, []).append(k)
+    return numbers
 
 
 def _along_line(at: States, kind: str, numbers: list[int]) -> dict[str, np.ndarray]:
@@ -219,8 +220,7 @@ def _along_line(at: States, kind: str, numbers: list[int]) -> dict[str, np.ndarr
 def _hard_contacts(model: Model, at: States, kind: str, asked: Asked) -> Values:
     """Return the results of hard contacts by name: sums and extremes over the outputs of their points."""
     found: Values = {}
-    for name in dict.fromkeys(point.name for point in model.hard_contacts):
-        points = [k for k, point in enumerate(model.hard_contacts) if point.name == name]
+    for name, points in _by_name(model.hard_contacts, asked).items():
         of = outputs_by_name(kind, at.numbers[kind][:, points])
         none, depth = np.full(len(at.q), np.nan), -of["gap"].min(axis=1)
         found[name] = {"force": of["force"].sum(axis=1), "friction_force": of["friction_force"].sum(axis=1),
@@ -242,18 +242,16 @@ def _drags(model: Model, at: States, kind: str, asked: Asked) -> Values:
 def _ices(model: Model, at: States, kind: str, asked: Asked) -> Values:
     """Return the results of ice by name: the mass of all its stretches."""
     found: Values = {}
-    for k, ice in enumerate(model.ices):
-        outputs = at.outputs(kind, k)
-        before = found.get(ice.name)
-        found[ice.name] = outputs | ({} if before is None else {"mass": before["mass"] + outputs["mass"]})
+    for name, own in _by_name(model.ices, asked).items():
+        of = outputs_by_name(kind, at.numbers[kind][:, own])
+        found[name] = {"thickness": of["thickness"][:, 0], "mass": of["mass"].sum(axis=1)}
     return found
 
 
 def _branches(model: Model, at: States, kind: str, asked: Asked) -> Values:
     """Return the results of branches by name, at the points of their elements."""
     found: Values = {}
-    for name in dict.fromkeys(branch.name for branch in model.branches if asked(branch.name)):
-        elements = [k for k, branch in enumerate(model.branches) if branch.name == name]
+    for name, elements in _by_name(model.branches, asked).items():
         of = outputs_by_name(kind, at.numbers[kind][:, elements])
         shape = len(at.q), of["sliding"].shape[1] * of["sliding"].shape[2]
         points = {"moment": of["moment"].reshape(*shape, 3)} | {
@@ -265,8 +263,7 @@ def _branches(model: Model, at: States, kind: str, asked: Asked) -> Values:
 def _working_curves(model: Model, at: States, kind: str, asked: Asked) -> Values:
     """Return the results of working curves by name, at the points of their elements."""
     found: Values = {}
-    for name in dict.fromkeys(curve.name for curve in model.working_curves if asked(curve.name)):
-        elements = [k for k, curve in enumerate(model.working_curves) if curve.name == name]
+    for name, elements in _by_name(model.working_curves, asked).items():
         of = outputs_by_name(kind, at.numbers[kind][:, elements])
         found[name] = {key: points.reshape(len(at.q), points.shape[1] * points.shape[2]) for key, points in of.items()}
     return found
