@@ -27,7 +27,7 @@ def signature(kind: type[Part]) -> inspect.Signature:
     for parameter in parameters_of(kind):
         positional = parameter.name in kind.positional
         parameters.append(parameter.replace(kind=inspect.Parameter.POSITIONAL_OR_KEYWORD) if positional else parameter)
-    return inspect.Signature(parameters, __validate_parameters__=False)  # a fifth of the time, at each import
+    return inspect.Signature(parameters)
 
 
 def _method(kind: type[Part]) -> Callable[..., Part | list[Part]]:
