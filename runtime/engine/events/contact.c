@@ -18,7 +18,7 @@ static double deepest(const fu_model *model, const fu_contact *contact, const fu
     double depth = -INFINITY;
     fu_attachment_state on;
     fu_surface_at(model, &contact->surface, state, &on);
-    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+    for (int e = 0; e < fu_contact_elements(contact); ++e) {
         fu_contact_heights heights;
         if (fu_contact_heights_of(model, contact, &on, state, e, &heights)) {
             depth = fmax(depth, heights.deepest);
@@ -56,7 +56,7 @@ static double beyond(const fu_model *model, const fu_coupling *coupling, const f
     fu_attachment_state on;
     if (!fu_surface_has_ends(&contact->surface)) return farthest;
     fu_surface_at(model, &contact->surface, state, &on);
-    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+    for (int e = 0; e < fu_contact_elements(contact); ++e) {
         if (!fu_contact_may_be_active(model, contact, &on, state, e, 0.0)) continue;
         for (int k = 0; k < contact->n_points; ++k) {
             fu_contact_point point;
@@ -169,7 +169,7 @@ static double grazing(const fu_run *run, const fu_coupling *coupling, int which,
     fu_surface_at(model, &contact->surface, &run->next, &on[1]);
     const double reach =
         fmax(reach_of(model, contact, &on[0], &run->now, h), reach_of(model, contact, &on[1], &run->next, h));
-    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+    for (int e = 0; e < fu_contact_elements(contact); ++e) {
         if (!fu_contact_may_be_active(model, contact, &on[1], &run->next, e, reach)) continue;
         for (int k = 0; k < contact->n_points; ++k) {
             const double found = fu_contact_grazing(run, contact, on, e, k, h);

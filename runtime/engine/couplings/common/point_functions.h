@@ -21,11 +21,10 @@ typedef long long fu_point_bits __attribute__((vector_size(8 * FU_BLOCK_POINTS))
 #define FU_PI 3.14159265358979323846
 #define FU_LOG2 0.69314718055994530942
 
-/* Returns a number of the first block where the mask is all ones, of the second where it is zero. */
-FU_INLINE fu_points fu_chosen(fu_point_bits mask, fu_points first, fu_points second)
-{
-    return (fu_points)((mask & (fu_point_bits)first) | (~mask & (fu_point_bits)second));
-}
+/* A number of the first block where the mask is all ones, of the second where it is zero. Functions return no blocks:
+ * how they would depends on the vectors that the compiler may use. */
+#define FU_CHOSEN(mask, first, second)                                                                                 \
+    ((fu_points)(((mask) & (fu_point_bits)(first)) | (~(mask) & (fu_point_bits)(second))))
 
 /* Computes cosine and sine. */
 FU_INLINE void fu_cosine_and_sine(const fu_points *theta, fu_points *cosine, fu_points *sine)
@@ -39,12 +38,12 @@ FU_INLINE void fu_cosine_and_sine(const fu_points *theta, fu_points *cosine, fu_
     c = FU_TERM(1)(FU_TERM(3)(FU_TERM(5)(FU_TERM(7)(FU_TERM(9)(FU_TERM(11)(FU_TERM(13)(FU_TERM(15)(c + 1.0))))))));
 #undef FU_TERM
     s *= x;
-    *sine = (fu_points)((fu_point_bits)fu_chosen(odd, c, s) ^ ((quarter & 2) << 62));
-    *cosine = (fu_points)((fu_point_bits)fu_chosen(odd, s, c) ^ (((quarter + 1) & 2) << 62));
+    *sine = (fu_points)((fu_point_bits)FU_CHOSEN(odd, c, s) ^ ((quarter & 2) << 62));
+    *cosine = (fu_points)((fu_point_bits)FU_CHOSEN(odd, s, c) ^ (((quarter + 1) & 2) << 62));
 }
 
-/* Returns the exponential. */
-FU_INLINE fu_points fu_exponential(const fu_points *exponent)
+/* Computes the exponential. */
+FU_INLINE void fu_exponential(const fu_points *exponent, fu_points *result)
 {
     const fu_points rounded = *exponent * (1.0 / FU_LOG2) + FU_TO_INTEGER, n = rounded - FU_TO_INTEGER;
     const fu_points x = (*exponent - n * FU_LOG2_1) - n * FU_LOG2_2;
@@ -53,7 +52,7 @@ FU_INLINE fu_points fu_exponential(const fu_points *exponent)
     e = FU_TERM(6)(FU_TERM(7)(FU_TERM(8)(FU_TERM(9)(FU_TERM(10)(FU_TERM(11)(FU_TERM(12)(FU_TERM(13)(e + 1.0))))))));
     e = FU_TERM(1)(FU_TERM(2)(FU_TERM(3)(FU_TERM(4)(FU_TERM(5)(e)))));
 #undef FU_TERM
-    return (fu_points)((fu_point_bits)e + ((fu_point_bits)rounded << 52));
+    *result = (fu_points)((fu_point_bits)e + ((fu_point_bits)rounded << 52));
 }
 
 #endif

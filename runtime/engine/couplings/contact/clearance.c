@@ -17,7 +17,7 @@ fu_clearance fu_contact_clearance(const fu_model *model, const fu_coupling *coup
     const double *carrier = body < 0 ? 0 : fu_place_of_body(model, state, body);
     if (body >= 0 && !carrier) return fu_no_clearance;
     fu_surface_at(model, &contact->surface, state, &on);
-    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+    for (int e = 0; e < fu_contact_elements(contact); ++e) {
         double middle[3] = {0.0}, reach = contact->spread[0];
         if (cable) reach = fu_sphere_about(cable, state->q, contact->first + e, middle);
         else memcpy(middle, fu_place_of_body(model, state, contact->attachments[0].body), sizeof(double) * (size_t)dim);

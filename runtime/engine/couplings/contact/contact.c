@@ -46,7 +46,7 @@ static void matrix(const fu_model *model, const fu_contact *contact, const fu_st
     double K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
     fu_attachment_state on;
     fu_surface_at(model, &contact->surface, state, &on);
-    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+    for (int e = 0; e < fu_contact_elements(contact); ++e) {
         int in_contact = 0;
         fu_contact_heights heights;
         if (!fu_contact_begin_element(model, contact, &on, state, e, &heights)) continue;

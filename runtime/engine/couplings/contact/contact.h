@@ -171,7 +171,7 @@ int fu_contact_is_pressed(const fu_model *model, const fu_contact *contact, cons
                           const fu_contact_heights *heights, fu_contact_point *point);
 
 /* couplings/contact/places.c */
-int fu_contact_elements(const fu_model *model, const fu_contact *contact);
+int fu_contact_elements(const fu_contact *contact);
 int fu_contact_may_be_active(const fu_model *model, const fu_contact *contact, const fu_attachment_state *on,
                              const fu_state *state, int element, double below);
 double fu_contact_weight(const fu_contact *contact, int element, int point);

@@ -188,7 +188,7 @@ static double over_step(const fu_model *model, const fu_contact *contact, const 
     double lost = 0.0;
     surface_step on;
     surface_over_step(model, contact, at, &on);
-    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+    for (int e = 0; e < fu_contact_elements(contact); ++e) {
         if (!may_be_in_contact(model, contact, &on, at, e)) continue;
         for (int k = 0; k < contact->n_points; ++k) {
             point_step point;
@@ -252,7 +252,7 @@ void fu_contact_step_tangent(const fu_model *model, const fu_coupling *coupling,
     fu_attachment_state on_middle;
     surface_over_step(model, contact, at, &on);
     fu_surface_at(model, &contact->surface, at->middle, &on_middle);
-    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+    for (int e = 0; e < fu_contact_elements(contact); ++e) {
         int in_contact = 0;
         if (!may_be_in_contact(model, contact, &on, at, e)) continue;
         const int n = contact->cable >= 0 ? model->cables[contact->cable].coordinates : 0;

@@ -103,7 +103,7 @@ int fu_contact_quadrature_error(const fu_model *model, const fu_coupling *coupli
     if (fu_contact_on_span(contact) && contact->law.friction == 0.0) return 0;
     fu_surface_at(model, &contact->surface, from, &on[0]);
     fu_surface_at(model, &contact->surface, to, &on[1]);
-    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+    for (int e = 0; e < fu_contact_elements(contact); ++e) {
         if (!fu_contact_may_be_active(model, contact, &on[0], from, e, 0.0) &&
             !fu_contact_may_be_active(model, contact, &on[1], to, e, 0.0))
             continue;

@@ -88,7 +88,7 @@ static double visit_points(const fu_model *model, const fu_contact *contact, con
     if (contact->law.friction == 0.0 || !(to->t > from->t)) return 0.0;
     fu_surface_at(model, &contact->surface, from, &before);
     fu_surface_at(model, &contact->surface, to, &of.on);
-    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+    for (int e = 0; e < fu_contact_elements(contact); ++e) {
         if (!fu_contact_may_be_active(model, contact, &before, from, e, 0.0) &&
             !fu_contact_may_be_active(model, contact, &of.on, to, e, 0.0))
             continue;

@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* Returns the number of elements that the points are divided into; those of a body are one. */
-int fu_contact_elements(const fu_model *model, const fu_contact *contact)
+int fu_contact_elements(const fu_contact *contact)
 {
     const fu_rope_contact *rope = fu_contact_on_span(contact);
     if (rope) return rope->on.n_elements;
@@ -168,7 +168,7 @@ void fu_contact_visit(const fu_model *model, const fu_contact *contact, const fu
 {
     fu_attachment_state on;
     fu_surface_at(model, &contact->surface, state, &on);
-    for (int e = 0; e < fu_contact_elements(model, contact); ++e) {
+    for (int e = 0; e < fu_contact_elements(contact); ++e) {
         fu_contact_heights heights;
         if (!fu_contact_begin_element(model, contact, &on, state, e, &heights)) continue;
         for (int k = 0; k < contact->n_points; ++k) {

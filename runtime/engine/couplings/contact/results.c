@@ -58,7 +58,7 @@ void fu_contact_update_history(const fu_model *model, const fu_coupling *couplin
     fu_attachment_state on;
     if (contact->law.friction == 0.0) return;
     fu_surface_at(model, &contact->surface, state, &on);
-    for (int e = 0; e < fu_contact_elements(model, contact); ++e)
+    for (int e = 0; e < fu_contact_elements(contact); ++e)
         for (int k = 0; k < contact->n_points; ++k) {
             fu_contact_point point;
             fu_contact_place(model, contact, &on, state, e, k, &point);
@@ -103,7 +103,7 @@ void fu_contact_outputs(const fu_model *model, const fu_coupling *coupling, cons
                         const double *acceleration, const fu_accelerator *work, double *out)
 {
     const fu_contact *contact = of(coupling);
-    const int n = fu_contact_elements(model, contact);
+    const int n = fu_contact_elements(contact);
     fu_attachment_state on;
     fu_contact_output *numbers = (fu_contact_output *)out;
     tally sum = {.numbers = numbers, .s = contact->start};
@@ -136,7 +136,7 @@ void fu_contact_densities(const fu_model *model, const fu_coupling *coupling, co
     const fu_contact *contact = of(coupling);
     fu_attachment_state on;
     fu_surface_at(model, &contact->surface, state, &on);
-    for (int e = 0; e < fu_contact_elements(model, contact); ++e)
+    for (int e = 0; e < fu_contact_elements(contact); ++e)
         for (int k = 0; k < contact->n_points; ++k, out += 3) {
             fu_contact_point point;
             fu_contact_place(model, contact, &on, state, e, k, &point);

@@ -61,7 +61,7 @@ static void in_waves(const fu_model *model, const fu_drag *drag, double t, const
                      fu_wetness *wet)
 {
     const int dim = model->dim;
-    fu_points place[3];
+    fu_points place[3] = {{0.0}};
     fu_block_fluid out;
     memset(&out, 0, sizeof out);
     for (int d = 0; d < dim; ++d) place[d] = (fu_points){0.0} + r[d];

@@ -78,9 +78,9 @@ FU_INLINE void height_at(int dim, const fu_drag *drag, const fu_drag_blocks *ker
     kernel->wave_stretching(&height, &at->eta, &at->rate, at->slope, up, &inv_depth, &out->Z, &out->rate,
                             out->by_place);
     const fu_point_bits above = (fu_point_bits)(out->Z > none), below = (fu_point_bits)(out->Z < bed);
-    out->Z = fu_chosen(above, none, fu_chosen(below, bed, out->Z));
-    out->rate = fu_chosen(above | below, none, out->rate);
-    for (int d = 0; d < dim; ++d) out->by_place[d] = fu_chosen(above | below, none, out->by_place[d]);
+    out->Z = FU_CHOSEN(above, none, FU_CHOSEN(below, bed, out->Z));
+    out->rate = FU_CHOSEN(above | below, none, out->rate);
+    for (int d = 0; d < dim; ++d) out->by_place[d] = FU_CHOSEN(above | below, none, out->by_place[d]);
 }
 
 FU_INLINE double largest(const fu_points *x)
@@ -101,13 +101,13 @@ FU_INLINE void add_velocities(const fu_model *model, const fu_drag *drag, const 
     height_at(dim, drag, kernel, at, r, up, &height);
     const double highest = largest(&height.Z);
     for (int i = 0; i < drag->waves.n_waves; ++i) {
-        fu_points k[3], wave[FU_WAVE_NUMBERS], potential, U[3], rate[3], gradient[9];
+        fu_points k[3], wave[FU_WAVE_NUMBERS], grow, potential, U[3], rate[3], gradient[9];
         if (drag->waves.wave_numbers[i * FU_WAVE_NUMBERS + 3] * highest < -MAX_DECAY) continue;
         wave_of(dim, &drag->waves, i, k, wave);
         const fu_points least = (fu_points){0.0} - MAX_EXPONENT;
         fu_points exponent = wave[3] * height.Z;
-        exponent = fu_chosen((fu_point_bits)(exponent < least), least, exponent);
-        const fu_points grow = fu_exponential(&exponent);
+        exponent = FU_CHOSEN((fu_point_bits)(exponent < least), least, exponent);
+        fu_exponential(&exponent, &grow);
         kernel->wave_velocity(k, wave, &phases[i].cosine, &phases[i].sine, &grow, up, &height.rate, height.by_place,
                               &potential, U, rate, gradient);
         for (int d = 0; d < dim; ++d) {
