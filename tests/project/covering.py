@@ -97,17 +97,26 @@ def all_pairs(factors: Mapping[str, Sequence[str]]) -> list[frozenset[Level]]:
             for a in of_one for b in of_other]
 
 
-def smallest(row: Row, neutral: Mapping[str, Sequence[str]], is_so: Callable[[Row], bool]) -> frozenset[Level]:
+def smallest(row: Row, neutral: Mapping[str, Sequence[str]], is_so: Callable[[Row], bool],
+             guesses: Sequence[frozenset[str]] = ()) -> frozenset[Level]:
     """Return a minimal set of levels of a row for which a statement holds: without any one of them it fails.
 
     neutral: by factor, levels with which the statement must also hold if the factor is irrelevant. Factors with several
-    of them come last, when few other levels can hide their effect.
+    of them come last, when few other levels can hide their effect. guesses: sets of factors that may have the levels;
+    the first with which the statement holds leaves out all others at once.
     """
+    order = sorted(row, key=lambda factor: len(neutral[factor]))
     found, part = dict(row), set()
-    for factor, level in sorted(row.items(), key=lambda item: len(neutral[item[0]])):
-        others = [other for other in neutral[factor] if other != level]
+    for factors in guesses:
+        left = [factor for factor in order if factor in factors or len(neutral[factor]) > 1]
+        guessed = {factor: level if factor in left else neutral[factor][0] for factor, level in row.items()}
+        if is_so(guessed):
+            order, found = left, guessed
+            break
+    for factor in order:
+        others = [other for other in neutral[factor] if other != row[factor]]
         if all(is_so(found | {factor: other}) for other in others):
             found[factor] = neutral[factor][0]
         else:
-            part.add((factor, level))
+            part.add((factor, row[factor]))
     return frozenset(part)

@@ -85,3 +85,17 @@ def test_a_neutral_level_has_part_in_it_where_another_one_does_not():
     row, levels = {"a": "0", "b": "2", "c": "3", "d": "1", "e": "0"}, frozenset({("a", "0"), ("b", "2")})
     found = smallest(row, NEUTRAL | {"a": ["0", "1"]}, lambda row: levels <= set(row.items()))
     assert found == levels
+
+
+def test_a_guess_leaves_out_all_other_factors_at_once():
+    row, levels = {"a": "1", "b": "2", "c": "3", "d": "1", "e": "2"}, frozenset({("b", "2"), ("c", "3")})
+    asked = []
+
+    def is_so(row):
+        asked.append(row)
+        return levels <= row.items()
+
+    for guesses, questions in (([], 5), ([{"b", "c"}], 3), ([{"a", "b"}, {"b", "c", "d"}], 5), ([{"d", "e"}], 6)):
+        asked.clear()
+        assert smallest(row, NEUTRAL, is_so, guesses) == levels
+        assert len(asked) == questions

@@ -113,6 +113,9 @@ def same(one: str, other: str) -> bool:
     return one.split(":")[:parts] == other.split(":")[:parts]
 
 
+GUESSES = 4
+"""How many sets of factors are tried before all levels of a row are left out one by one."""
+
 CAUSES: dict[frozenset[Level], str] = {}
 """Smallest sets of levels that were found so far, of any question, with the errors that they end in."""
 
@@ -122,6 +125,12 @@ def _known(row: Row, found: str) -> frozenset[Level] | None:
     if not found.startswith(REFUSED):
         return None
     return next((levels for levels, error in CAUSES.items() if error == found and levels <= row.items()), None)
+
+
+def _guesses(found: str) -> list[frozenset[str]]:
+    """Return sets of factors that led to an error of the same cause, the most frequent first, up to `GUESSES`."""
+    return [factors for factors, _ in Counter(frozenset(dict(levels)) for levels, error in CAUSES.items()
+                                              if same(error, found)).most_common(GUESSES)]
 
 
 def answered(array: CoveringArray, neutral: dict[str, list[str]]) -> dict[frozenset[Level], str]:
@@ -137,7 +146,8 @@ def answered(array: CoveringArray, neutral: dict[str, list[str]]) -> dict[frozen
         if found == WORKS or found.startswith(TOLD):
             array.worked(row)
         else:
-            levels = _known(row, found) or smallest(row, neutral, lambda row: same(found, outcome(row)))  # noqa: B023
+            levels = _known(row, found) or smallest(row, neutral, lambda row: same(found, outcome(row)),  # noqa: B023
+                                                    _guesses(found))
             CAUSES[levels] = found
             array.refuse(levels)
             if not found.startswith(REFUSED):
