@@ -31,9 +31,9 @@ class EnergyMomentum(Integrator):
     needs_discrete_gradient = True
 
     @classmethod
-    def of(cls, spectral_radius: float) -> Integrator:
+    def of(cls, spectral_radius: float | None = None, friction: bool = False) -> Integrator:
         """Return the integrator with this spectral radius, see `Integrator.of`."""
-        return cls(spectral_radius)
+        return cls(cls.default_spectral_radius if spectral_radius is None else spectral_radius)
 
     @property
     def parameters(self) -> np.ndarray:

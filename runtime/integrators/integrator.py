@@ -69,8 +69,11 @@ class Integrator(ABC):
         """Return the parameters in the order of the engine's structure."""
 
     @classmethod
-    def of(cls, spectral_radius: float) -> Integrator:
-        """Return the integrator, with this spectral radius at infinite frequency if it has one."""
+    def of(cls, spectral_radius: float | None = None, friction: bool = False) -> Integrator:
+        """Return the integrator, with this spectral radius at infinite frequency if it has one.
+
+        None: the default, which may be another one for scenes with friction by forces of constraints.
+        """
         return _made(cls)
 
     cost_of_evaluation: ClassVar[float] = 1.0

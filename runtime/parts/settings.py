@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from ..integrators import AUTO, INTEGRATORS, stable_at
+from ..integrators import AUTO, INTEGRATORS
 from .part import Part
 from .schemas import checked
 from .validation import Count, Flag, Names, items, not_negative, number, one_of, positive, shown, within
@@ -19,14 +19,6 @@ COUNT_TOLERANCE = 1e-9
 """Relative rounding of a number of steps above a whole number."""
 
 Duration = Annotated[float, positive("s")]
-
-
-def default_spectral_radius(integrator: str) -> float:
-    """Return the default spectral radius of an integrator, else of the one for fixed steps."""
-    own = INTEGRATORS[integrator].default_spectral_radius if integrator in INTEGRATORS else None
-    own = stable_at(fixed_step=True).default_spectral_radius if own is None else own
-    assert own is not None, "the integrator for fixed steps has one"
-    return own
 
 
 STEPS_OF_TOL = {"step", "absolute_tol"}
@@ -58,8 +50,8 @@ class RunSettings(Part):
         "linear" (order 2, for small motions about the start: cables and joints are linear there, see
         `integrators.Linear`), or "auto": the cheapest of the first three for this scene and tol, genalpha where step or
         spectral_radius is given
-    spectral_radius: of genalpha and linear (default 0.9) and energy (1) at infinite frequency: 1 keeps and 0 removes
-        the fastest vibrations, energy's of the cables, counted as dissipated
+    spectral_radius: of genalpha and linear (default 0.9, with friction 0.5) and energy (1) at infinite frequency: 1
+        keeps and 0 removes the fastest vibrations, energy's of the cables, counted as dissipated
     model: "given", the elements as they are, or "auto": as `Scene.choose`, elements that are not given, and the
         integrator, are chosen for an error of model, mesh and time below tol
     initial: "drawn", "equilibrium" (static, under the loads at t = 0), "relaxed" (see `Scene.relax`), or a state that
@@ -78,8 +70,7 @@ class RunSettings(Part):
     step: Duration | None = None
     output_step: Duration = Field(default_factory=lambda data: data["duration"] / 100)
     integrator: Annotated[str, one_of((AUTO, *INTEGRATORS))] = AUTO
-    spectral_radius: Annotated[float, within(0, 1, ends=True)] = Field(
-        default_factory=lambda data: default_spectral_radius(data.get("integrator", AUTO)))
+    spectral_radius: Annotated[float, within(0, 1, ends=True)] | None = None
     model: Annotated[str, one_of(("given", "auto"))] = "given"
     initial: Annotated[str, one_of(("drawn", "equilibrium", "relaxed", "state"))] = "drawn"
     save: Annotated[str | None, BeforeValidator(

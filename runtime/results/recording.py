@@ -96,7 +96,7 @@ def recorded(simulation: Simulation, scene: SceneData, settings: RunSettings, ti
         "status": status,
         "integrator": engine.integrator,
         "integrator_reason": simulation.reason,
-        "spectral_radius": settings.spectral_radius,
+        "spectral_radius": simulation.spectral_radius,
         "tol": settings.tol if settings.step is None else None,
         "absolute_tol": engine.absolute_tol if settings.step is None else None,
         "quantities": None if settings.quantities is None or settings.step is not None else list(settings.quantities),

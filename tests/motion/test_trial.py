@@ -21,7 +21,7 @@ GENALPHA = GeneralisedAlpha()
 
 
 @pytest.mark.parametrize("name", ["pendulum, 8, E 7e8", "first scene", "flexible link", "steel and rubber",
-                                  "two riders"])
+                                  "two riders", "friction that stops", "stick", "zip line"])
 def test_genalpha_begins_where_tol_is_loose(name):
     """With a part of tol its error is within tol, with less work than radau."""
     run, radau = (simulate(name, tol=1e-2, integrator=integrator) for integrator in ("auto", "radau"))
@@ -44,7 +44,7 @@ def test_genalpha_begins_with_moving_supports_where_drag_stops_the_cable(tol):
     assert dry.report["integrator"] != "genalpha"
 
 
-@pytest.mark.parametrize("name", ["friction that stops", "shaken support", "double pendulum", "heavy top on a spring"])
+@pytest.mark.parametrize("name", ["shaken support", "double pendulum", "heavy top on a spring"])
 def test_genalpha_does_not_begin_where_its_estimate_misses_the_error(name):
     assert simulate(name, tol=1e-2).report["integrator"] != "genalpha"
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -51,11 +50,10 @@ LOW_ORDER_TOL = 1e-3
 """The tol from which on the method of low order is the first choice: it is cheaper at errors above 1e-3 of the
 motion."""
 
-LOW_ORDER_TOL_WITH_FRICTION = 4e-2
-"""The same for slides with friction: at tighter tol the error of genalpha can be many times tol."""
-
-LOW_ORDER_TOL_FRACTION = 0.7
-"""Fraction of tol for the method of low order, whose error can exceed its tol (tests/benchmarks/choice.py)."""
+LOW_ORDER_TOL_FRACTION = {False: 0.7, True: 0.4}
+"""Fraction of tol for the method of low order, without and with friction: its error can exceed its tol
+(tests/benchmarks/choice.py).
+"""
 
 MAX_LOW_ORDER_COST_RATIO = 4.0
 """Upper bound of the cost of the method of low order over the expected cost of radau."""
@@ -99,10 +97,10 @@ def choose(settings: RunSettings, scene: SceneData, model: Model, engine: Engine
     resumed: the name of the integrator of a resumed run. Raises SceneError where the integrator that was asked for
     cannot run the scene.
     """
-    if settings.integrator != AUTO or settings.step is not None or "spectral_radius" in settings.model_fields_set:
+    if not _is_free(settings):
         return *_asked_for(settings, scene, model, engine), None
     if resumed in INTEGRATORS:
-        return INTEGRATORS[resumed].of(settings.spectral_radius), "as the run began", None
+        return INTEGRATORS[resumed].of(friction=has_friction(scene)), "as the run began", None
     demands = demands_of(settings, scene, model, engine)
     found = cheapest(demands, settings.duration)
     if not suits_low_order(demands, scene, model):
@@ -112,22 +110,26 @@ def choose(settings: RunSettings, scene: SceneData, model: Model, engine: Engine
     return end_with_low_order(demands, settings.duration, *found) if model.slides else found
 
 
-def tol_of(settings: RunSettings, method: Integrator) -> float:
+def _is_free(settings: RunSettings) -> bool:
+    """Return whether settings leave the integrator to the scene."""
+    return settings.integrator == AUTO and settings.step is None and settings.spectral_radius is None
+
+
+def tol_of(settings: RunSettings, scene: SceneData, method: Integrator) -> float:
     """Return the tolerance of a run's steps: its tol, or less where the method of low order was chosen automatically.
     """
-    own = settings.integrator == AUTO and settings.step is None and "spectral_radius" not in settings.model_fields_set
-    reduced = own and method.name == stable_at(fixed_step=True).name
-    return settings.tol * LOW_ORDER_TOL_FRACTION if reduced else settings.tol
+    reduced = _is_free(settings) and method.name == stable_at(fixed_step=True).name
+    return settings.tol * LOW_ORDER_TOL_FRACTION[has_friction(scene)] if reduced else settings.tol
 
 
 def _asked_for(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> tuple[Integrator, str]:
     """Return the integrator that the settings determine, directly or by the step, and the reason."""
     check_step_in_waves(settings, scene)
     if settings.integrator != AUTO:
-        chosen = INTEGRATORS[settings.integrator].of(settings.spectral_radius)
+        chosen = INTEGRATORS[settings.integrator].of(settings.spectral_radius, has_friction(scene))
         check(chosen, scene, model, engine)
         return chosen, "as asked for"
-    fixed = stable_at(fixed_step=True).of(settings.spectral_radius)
+    fixed = stable_at(fixed_step=True).of(settings.spectral_radius, has_friction(scene))
     if settings.step is not None:
         return fixed, f"the step is fixed: {fixed.name} is stable at any"
     return fixed, f"spectral_radius is given, which is {fixed.name}'s"
@@ -142,22 +144,21 @@ def cheapest(demands: Demands, duration: float) -> tuple[Integrator, str, Rival 
     stable, limited = stable_at(fixed_step=False), min(said, key=lambda one: (one.stability is None, said[one][0]))
     why, sure = ", ".join(text for _, text in said.values()), said[limited][0]
     if said[stable][0] > sure * MAX_TRIAL_COST_RATIO:
-        return _made(limited), why, None
+        return limited.of(), why, None
     worth = sure * duration >= MIN_TRIAL_EVALUATIONS
     if not worth and said[stable][0] > sure:
-        return _made(limited), why, None
+        return limited.of(), why, None
     most = sure * duration / (FRICTION_TRIAL_MARGIN if demands.friction else 1.0)
-    return _made(stable), why, Rival(_made(limited), most) if worth else None
+    return stable.of(), why, Rival(limited.of(), most) if worth else None
 
 
 def suits_low_order(demands: Demands, scene: SceneData, model: Model) -> bool:
     """Return whether the error of positions that genalpha estimates is decisive: not with moving supports, which may
-    excite vibrations without end, unless a fluid damps these; friction of slides at a tight tol, bodies that turn fast
-    or outrun their cable's waves, nor without cables.
+    excite vibrations without end, unless a fluid damps these; bodies that turn fast or outrun their cable's waves, nor
+    without cables and ropes.
     """
     fastest = max((float(np.linalg.norm(body.angular_velocity)) for body in scene.bodies.values()), default=0.0)
-    return (bool(model.cables) and (not model.motions or stopping_share(scene) <= MAX_STOPPING_SHARE)
-            and (demands.tol >= LOW_ORDER_TOL_WITH_FRICTION or not demands.friction)
+    return (bool(model.cables or model.ropes) and (not model.motions or stopping_share(scene) <= MAX_STOPPING_SHARE)
             and fastest <= FAST_TURN_RATIO * demands.slow and not outrunning(scene))
 
 
@@ -171,7 +172,7 @@ def begin_with_low_order(demands: Demands, duration: float, method: Integrator, 
     explicit, radau = Explicit.cost(demands)[0], Radau.cost(demands)[0]
     if explicit * duration < MIN_LOW_ORDER_EVALUATIONS:
         return method, why, rival
-    low = _made(stable_at(fixed_step=True))
+    low = stable_at(fixed_step=True).of(friction=demands.friction)
     most = duration * min(explicit, MAX_LOW_ORDER_COST_RATIO * radau)
     return low, f"{why}; tol is loose: {low.name} has the cheapest steps", Rival(method, most, rival)
 
@@ -183,24 +184,27 @@ def end_with_low_order(demands: Demands, duration: float, method: Integrator, wh
 
     The rival is replaced where it costs four times the estimate.
     """
-    tol = LOW_ORDER_TOL_FRACTION * demands.tol
+    tol = LOW_ORDER_TOL_FRACTION[demands.friction] * demands.tol
     expected = duration * LOW_ORDER_EVALUATIONS_PER_RADIAN * demands.slow / math.sqrt(tol)
     most = RADAU_COST_MARGIN * expected
     if not isinstance(method, Radau) or demands.tol < MIN_LOW_ORDER_TOL or (rival is not None and rival.cost < most):
         return method, why, rival
     last = Rival(method, 4.0 * expected) if rival is None or rival.cost > 4.0 * expected else rival
-    return method, why, Rival(_made(stable_at(fixed_step=True)), most, last)
+    return method, why, Rival(stable_at(fixed_step=True).of(friction=demands.friction), most, last)
 
 
 def demands_of(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> Demands:
     """Return the demands of a scene on an integrator."""
     frequency, decay = fastest_rates(model, engine)
-    rubbing = scene.rubbing
-    decay = max(decay, *(regularised_decay(scene, part) for part in rubbing), 0.0)
-    friction = any(part.friction is not None and part.friction.sliding for part in rubbing) or any(
+    decay = max(decay, *(regularised_decay(scene, part) for part in scene.rubbing), 0.0)
+    return Demands(frequency, decay, slowest_rate(scene, model, settings.duration), has_friction(scene), settings.tol)
+
+
+def has_friction(scene: SceneData) -> bool:
+    """Return whether a scene has friction by the forces of constraints, or of ropes on sheaves."""
+    return any(part.friction is not None and part.friction.sliding for part in scene.rubbing) or any(
         contact.is_hard and contact.friction_coefficient for contact in scene.contacts.values()) or any(
         rough_sheaves(scene.ropes.values()))
-    return Demands(frequency, decay, slowest_rate(scene, model, settings.duration), friction, settings.tol)
 
 
 def check_step_in_waves(settings: RunSettings, scene: SceneData) -> None:
@@ -381,9 +385,3 @@ def _largest(matrix: Any, mass: Any, by_mass: Callable[[np.ndarray], np.ndarray]
         x /= size
     pushed = symmetric.dot(x)
     return math.sqrt(by_mass(pushed).dot(pushed) / x.dot(mass.dot(x)))
-
-
-@cache
-def _made(kind: type[Integrator]) -> Integrator:
-    """Return the integrator of a kind with its default parameters, which are the same in every run."""
-    return kind()

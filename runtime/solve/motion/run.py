@@ -67,7 +67,7 @@ class Start(Protocol):
 
 @dataclass
 class Simulation:
-    """The end of a run: the engine with its last rows, the status, the reason for the integrator.
+    """The end of a run: the engine with its last rows, the status, the reason for the integrator, its spectral radius.
 
     Wall time: set_up_s until the engine starts, start_s from there to its first step, notes_s of the notes on results
     after its last one, total_s of all; solve_cpu_s: CPU time of the integration in s, without other processes and
@@ -80,6 +80,7 @@ class Simulation:
     status: str
     messages: list[str]
     reason: str
+    spectral_radius: float | None
     set_up_s: float
     start_s: float
     notes_s: float
@@ -142,7 +143,8 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: ProgressDispl
     LOG.info("run %s after %.3g s", status.replace("_", " "), total)
     for message in messages:
         LOG.info("run: %s", message)
-    return Simulation(run.model, run.engine, run.event_handler, status, messages, reason + why, set_up, started, noted,
+    return Simulation(run.model, run.engine, run.event_handler, status, messages, reason + why,
+                      getattr(method, "spectral_radius", None), set_up, started, noted,
                       total, cpu)
 
 
@@ -240,7 +242,7 @@ def _begun(scene: SceneData, settings: RunSettings, ready: _Prepared, method: In
     model, engine, event_handler, _ = ready
     status, gaps, change = _start(scene, settings, model, engine, method, None if stream is None else blocks.capacity)
     event_handler.change_signals = lambda restarts: engine.change_signals(
-        model, _breakpoints(model, settings, method), restarts)
+        model, _breakpoints(scene, model, settings, method), restarts)
     row_notes = RowNotes(scene, model, settings.step_taken or 0.0, settings.duration)
     if stream is not None and status is None:
         stream.start(model, engine, blocks, event_handler.happened, row_notes, on_trial)
@@ -249,9 +251,10 @@ def _begun(scene: SceneData, settings: RunSettings, ready: _Prepared, method: In
     return _Begun(model, engine, event_handler, status, gaps, change, observer, row_notes, clock.wall)
 
 
-def _breakpoints(model: Model, settings: RunSettings, method: Integrator) -> tuple[np.ndarray, np.ndarray]:
+def _breakpoints(scene: SceneData, model: Model, settings: RunSettings,
+                 method: Integrator) -> tuple[np.ndarray, np.ndarray]:
     """Return the instants at which steps of a run end, see `breakpoints`."""
-    return breakpoints(model, settings.duration, tol_of(settings, method), turns=settings.step is None,
+    return breakpoints(model, settings.duration, tol_of(settings, scene, method), turns=settings.step is None,
                        nodes=method.order > 2)
 
 
@@ -259,7 +262,7 @@ def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine
            capacity: int | None) -> tuple[str | None, list[str], np.ndarray]:
     """Start the engine; return the status where the run has ended, else None. Raises SceneError for a singular start.
     """
-    tol = tol_of(settings, method)
+    tol = tol_of(settings, scene, method)
     if method.is_linear:
         from .linear_model import take_linear_model  # loads SciPy, which other runs do without
 
@@ -272,7 +275,7 @@ def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine
         **_control(settings, scene, model),
         method=method,
         first_step=min(settings.output_step, 1e-3 * settings.duration),
-        breakpoints=_breakpoints(model, settings, method),
+        breakpoints=_breakpoints(scene, model, settings, method),
         capacity=capacity,
     )
     if status == "singular" and engine.self_locking >= 0:

@@ -266,7 +266,7 @@ def unexplained(engine: Engine, settings: RunSettings) -> list[str]:
     if not off > quiet * max(exchanged, MIN_ENERGY_EXCHANGE * in_motion) + rounding:
         return []
     what = ("went that neither damping nor friction nor impacts took", "came that nothing did work for")[grown > lost]
-    damps = INTEGRATORS[engine.integrator].loses_energy_by_spectral_radius and settings.spectral_radius < 1
+    damps = INTEGRATORS[engine.integrator].loses_energy_by_spectral_radius and settings.spectral_radius != 1
     damped = ", or a spectral_radius nearer to 1" if lost > grown and damps else ""
     part = f"{off / exchanged:.2g} of the {exchanged:.3g} J exchanged" if exchanged > off else "all that was exchanged"
     return [f"the energy balance is off by up to {off:.3g} J, {part}: energy {what}. The integration makes this error: "

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...engine import Engine, outputs_by_name
-from ...integrators import stable_at
+from ...integrators import GeneralisedAlpha, stable_at
 from ...model.model import SlideModel
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
@@ -58,15 +58,21 @@ def uncontrolled_errors(scene: SceneData, engine: Engine, settings: RunSettings,
     """Return a note where the steps of "genalpha" or "radau" were chosen without errors that may be large."""
     if settings.step is not None or not engine.moves:
         return []
+    vibrating = [] if forces is None else _of_vibrating(engine, forces.vibrating)
     if engine.integrator == "radau":
-        return [] if forces is None else _of_radau(forces.vibrating)
-    return _of_genalpha(scene, engine, settings, turns) if engine.integrator == "genalpha" else []
+        return vibrating
+    if engine.integrator == GeneralisedAlpha.name:
+        return _of_genalpha(scene, engine, settings, turns) or vibrating
+    return []
 
 
 def _of_genalpha(scene: SceneData, engine: Engine, settings: RunSettings, turns: FastTurns | None) -> list[str]:
-    """Friction, bodies that turn fast, slides that outrun the waves of their cable."""
+    """Friction by a spectral radius above the default, bodies that turn fast, slides that outrun the waves of their
+    cable.
+    """
+    rubs = (settings.spectral_radius or 0.0) > GeneralisedAlpha.default_with_friction
     fast = [] if turns is None else turns.uncontrolled(engine.statistics["steps"], settings.tol)
-    errors = [*(f'the friction of slide "{name}"' for name in scene.slides if _has_friction(scene, name)),
+    errors = [*(f'the friction of slide "{name}"' for name in scene.slides if rubs and _has_friction(scene, name)),
               *(f'how fast body "{name}" turns' for name in fast),
               *(f'the shock before slide "{name}", which is faster than waves in its cable'
                 for name in outrunning(scene))]
@@ -77,11 +83,11 @@ def _of_genalpha(scene: SceneData, engine: Engine, settings: RunSettings, turns:
             f'integrator="{stable_at(fixed_step=False).name}", or give estimate=True, which measures them']
 
 
-def _of_radau(vibrating: list[str]) -> list[str]:
+def _of_vibrating(engine: Engine, vibrating: list[str]) -> list[str]:
     """Friction under a normal force that vibrates: the method damps vibrations that its steps do not resolve."""
     if not vibrating:
         return []
     slides = " and ".join(f'"{name}"' for name in vibrating)
     return [f"the normal force at slide {slides} vibrates about zero, and friction with it: steps of integrator "
-            '"radau" need not resolve these vibrations, and errors may be 10 times tol and more. Take '
+            f'"{engine.integrator}" need not resolve these vibrations, and errors may be 10 times tol and more. Take '
             'integrator="explicit", give the cable more damping, or give estimate=True, which measures the errors']
