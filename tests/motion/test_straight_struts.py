@@ -48,6 +48,14 @@ def test_a_load_that_is_gone_at_the_end_is_noted_too():
         strut(Pulse(start=0, end=0.02, height=40 * EULER)).run(0.04, tol=1e-3)
 
 
+def test_a_bar_that_heat_compresses_is_noted():
+    scene = cable_scene("strut", pins=(0, 1), gravity=(0, 0, 0), elements=6, section=Circle(radius=RADIUS),
+                        temperature=Ramp(start=0, end=0.02, before=0.0, after=100.0), material=Material(
+                            youngs_modulus=MODULUS, poisson_ratio=0, density=1000, thermal_expansion=1e-4))
+    with pytest.warns(FunicularWarning, match=f"compression of {MODULUS * np.pi * RADIUS**2 * 1e-2 / 1.01:.2g}"):
+        scene.run(0.03, tol=1e-3)
+
+
 def test_positions_of_nodes_by_name(tmp_path):
     """The same name in an equilibrium, in a run, and in a file."""
     from funicular import load_run

@@ -98,7 +98,8 @@ def test_a_clamp_bends_a_taut_cable_towards_its_force(side, across, degrees):
     force = pull * np.array([[np.cos(angle) + across, np.sin(angle), 0]])
     kink = fixed_direction(np.zeros(1), np.array([[1.04, 0, 0]]), force, side)
     s = np.array([[side * distance, -side * distance]])
-    found = beside(kink, s, s > 0, lambda about: np.full((1, 2), EI), np.repeat(force[:, None], 2, axis=1))
+    found = beside(kink, s, s > 0, lambda about: np.full((1, 2), EI), np.repeat(force[:, None], 2, axis=1),
+                   np.ones((len(force), 2)))
     theta = 4 * np.arctan(np.tan(angle / 4) * np.exp(-distance / np.sqrt(EI / pull)))
     assert_allclose(found, [[[0, 0, side * 2 * np.sqrt(pull * EI) * np.sin(theta / 2)], [0, 0, 0]]], rtol=1e-12)
 

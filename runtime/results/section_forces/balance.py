@@ -64,7 +64,7 @@ def balanced(cable: Cable, model: CableModel, forces: ElementForces, loads: Cabl
              cuts: Cuts) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the force and moment (T, n, 3) on the part before each cut, along the ground's axes, in N and N m.
 
-    The third is the derivative of the force by s there, in N/m.
+    The third is the derivative of the force by the stress-free length there, in N/m.
     """
     is_r, half = positions(model), model.shape[1]
     times, n = len(forces.e), cuts.s.shape[1]
@@ -105,7 +105,7 @@ def balanced(cable: Cable, model: CableModel, forces: ElementForces, loads: Cabl
             here, of_x = inside[:, columns, None], cuts.x[:, columns]
             for total, weights in zip((force, change), _lagrange(spread.x, of_x), strict=True):
                 total[:, columns] += np.where(here, _through(weights, spread.on_slope), 0.0)
-    return force, moment, change
+    return force, moment, change / forces.growth[instants, element][..., None]
 
 
 def _of_inertia(cable: Cable, model: CableModel, cuts: Cuts, e: np.ndarray, a: np.ndarray) -> tuple[np.ndarray,

@@ -55,8 +55,10 @@ def _split(vector: np.ndarray, tangent: np.ndarray) -> tuple[np.ndarray, np.ndar
     return along, vector - along[..., None] * tangent
 
 
-def unresolved(cable: Cable, force: np.ndarray, element: np.ndarray) -> np.ndarray:
+def unresolved(cable: Cable, force: np.ndarray, element: np.ndarray, growth: np.ndarray) -> np.ndarray:
     """Return the part (T, n) of a kink that elements of these numbers (T or 1, n) smear into an arc, 0 to 1.
+
+    growth (T, n): of the elements, see `ElementForces`.
 
     Under an axial force N a cable bends beside a point force over sqrt(E I / N), a cubic over an element of length l.
     N l^2 and 12 E I are the shares of tension and bending in the stiffness against a kink; with their ratio x, the part
@@ -64,7 +66,7 @@ def unresolved(cable: Cable, force: np.ndarray, element: np.ndarray) -> np.ndarr
     """
     bending = 12 * of_cuts(cable, element, lambda piece: piece.material.youngs_modulus * float(
         max(piece.section.moments()[1 : cable.dim])))
-    tension = np.linalg.norm(force, axis=-1) * np.square(cable.mesh.each_length(element))
+    tension = np.linalg.norm(force, axis=-1) * np.square(growth * cable.mesh.each_length(element))
     x = np.divide(tension, bending, out=np.full(np.shape(tension), 1e100), where=np.broadcast_to(
         np.greater(bending, 0.0), np.shape(tension)))  # without bending stiffness it is all of it
     return np.asarray(x**2 / (1 + x**2))
@@ -76,13 +78,13 @@ def _bending(k: int, piece: UniformPiece) -> float:
 
 
 def taut_bending(cable: Cable, force: np.ndarray, change: np.ndarray, axes: np.ndarray, cuts: Cuts,
-                 kinks: Callable[[], list[Kink]]) -> np.ndarray:
+                 growth: np.ndarray, kinks: Callable[[], list[Kink]]) -> np.ndarray:
     """Return the bending moment (T, n, 3) of a taut cable along the line of its force, see layer.py.
 
     Zero where the mesh resolves the bending, and in compression.
     """
     pulls = np.einsum("tsi,tsi->ts", force, axes[..., 0, :]) > 0
-    if not np.any(pulls & (unresolved(cable, force, cuts.element) > MIN_UNRESOLVED)):
+    if not np.any(pulls & (unresolved(cable, force, cuts.element, growth) > MIN_UNRESOLVED)):
         return np.zeros_like(force)
     yy, zz = (of_cuts(cable, cuts.element, partial(_bending, k)) for k in (1, 2))
 
@@ -95,12 +97,13 @@ def taut_bending(cable: Cable, force: np.ndarray, change: np.ndarray, axes: np.n
 
     moment = line_bending(stiffness, force, change)
     for kink in kinks():
-        moment = moment + beside(kink, cuts.s, cuts.after, stiffness, force)
+        moment = moment + beside(kink, cuts.s, cuts.after, stiffness, force, growth)
     return np.where(pulls[..., None], moment, 0.0)
 
 
 def balanced_components(cable: Cable, balance: tuple[np.ndarray, np.ndarray], law: tuple[np.ndarray, np.ndarray],
-                        taut: np.ndarray, axes: np.ndarray, strain: np.ndarray, cuts: Cuts) -> dict[str, np.ndarray]:
+                        taut: np.ndarray, axes: np.ndarray, strain: np.ndarray, cuts: Cuts,
+                        growth: np.ndarray) -> dict[str, np.ndarray]:
     """Return force, moment and components in balance; balance, law: (force, moment), each (T, n, 3).
 
     A mesh too coarse for the bending of a taut cable has a wrong tangent and wrong points of the centreline beside a
@@ -109,7 +112,7 @@ def balanced_components(cable: Cable, balance: tuple[np.ndarray, np.ndarray], la
     `taut_bending`. Size and direction of the force, and torque, stay.
     """
     force, moment = balance
-    w, tangent = unresolved(cable, force, cuts.element), axes[..., 0, :]
+    w, tangent = unresolved(cable, force, cuts.element, growth), axes[..., 0, :]
     (along, across), (_, bent) = _split(force, tangent), _split(law[0], tangent)
     size, off, by_law = (np.linalg.norm(value, axis=-1) for value in (force, across, bent))
     angle = (1 - w) * np.arctan2(off, np.abs(along)) + w * np.arcsin(np.minimum(by_law, size) / _not_zero(size))

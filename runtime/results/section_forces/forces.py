@@ -121,9 +121,11 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
     loads = CableLoads(scene, model, at, concerned)
     forces = element_forces(model, at, loads, number)
     balance_force, balance_moment, change = balanced(cable, of, forces, loads, number, cuts)
+    growth = forces.growth[np.arange(len(at.time))[:, None], cuts.element]
     taut = moment if cable.is_curved else taut_bending(  # a curved wire pulled straight has a moment
-        cable, balance_force, change, axes, cuts, lambda: kinks(scene, cable, of, forces, loads, number))
-    return balanced_components(cable, (balance_force, balance_moment), (force, moment), taut, axes, strain, cuts)
+        cable, balance_force, change, axes, cuts, growth, lambda: kinks(scene, cable, of, forces, loads, number))
+    return balanced_components(cable, (balance_force, balance_moment), (force, moment), taut, axes, strain, cuts,
+                               growth)
 
 
 def _of_branches(scene: SceneData, at: Instants, cable: Cable, cuts: Cuts, tangent: np.ndarray,

@@ -68,23 +68,27 @@ Stiffness = Callable[[np.ndarray], np.ndarray]
 
 
 def line_bending(stiffness: Stiffness, force: np.ndarray, change: np.ndarray) -> np.ndarray:
-    """Return the moment (T, n, 3) of a line along the force; change (T, n, 3): derivative of the force by s."""
+    """Return the moment (T, n, 3) of a line along the force; change (T, n, 3): derivative of the force by the
+    stress-free length.
+    """
     square = np.sum(force**2, axis=-1)[..., None]
     turn = np.cross(force, change) / np.where(square > 0, square, 1.0)
     return stiffness(turn)[..., None] * turn
 
 
-def beside(kink: Kink, s: np.ndarray, after: np.ndarray, stiffness: Stiffness, force: np.ndarray) -> np.ndarray:
+def beside(kink: Kink, s: np.ndarray, after: np.ndarray, stiffness: Stiffness, force: np.ndarray,
+           growth: np.ndarray) -> np.ndarray:
     """Return the moment (T, n, 3) beside a kink at cuts s (T or 1, n) with these forces.
 
-    after (T or 1, n): whether a cut at the kink is on the side of larger s.
+    after (T or 1, n): whether a cut at the kink is on the side of larger s. growth (T, n): the stress-free length over
+    that of s.
     """
     place = kink.s[:, None]
     EI = stiffness(np.where(np.any(kink.axis, axis=-1)[:, None], kink.axis, kink.moment)[:, None])
     found = np.zeros_like(force)
     size = np.linalg.norm(force, axis=-1)
     bent = np.sqrt(EI / np.where(size > 0, size, np.inf))
-    distance = np.abs(s - place)
+    distance = growth * np.abs(s - place)
     beyond = np.where(distance <= 1e-12 * np.max(np.abs(s), initial=0.0), after, s > place)
     near = (distance < MAX_DECAY_LENGTHS * bent) & (bent > 0) & ((kink.side == 0) | (beyond == (kink.side > 0)))
     if not near.any():

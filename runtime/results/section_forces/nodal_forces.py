@@ -23,7 +23,8 @@ class ElementForces:
 
     given: generalised forces of the nodes on each element; inertia: nodal accelerations plus mass damping less gravity,
     so that mass times inertia is the resultant on a length of cable; e: nodal vectors. spreads: inertia of the added
-    mass of fluids; masses: that of point masses, as forces on the cable.
+    mass of fluids; masses: that of point masses, as forces on the cable. growth (T, elements): the stress-free length
+    over that as drawn.
     """
 
     given: np.ndarray
@@ -31,6 +32,7 @@ class ElementForces:
     e: np.ndarray
     spreads: list[Spread]
     masses: list[PointLoad]
+    growth: np.ndarray
 
 
 def element_forces(model: Model, at: Instants, loads: CableLoads, cable: int) -> ElementForces:
@@ -48,7 +50,8 @@ def element_forces(model: Model, at: Instants, loads: CableLoads, cable: int) ->
     mass_damping = of.of_elements(lambda piece: piece.mass_damping)[:, None, None]
     inertia = a + mass_damping * element_coordinates(of, at.v) - _uniform(of, loads.gravity)
     return ElementForces(given, inertia, element_coordinates(of, at.q), spreads,
-                         [loads.of_mass(cable, mass, inertia) for mass in loads.scene.masses_on(of.name)])
+                         [loads.of_mass(cable, mass, inertia) for mass in loads.scene.masses_on(of.name)],
+                         of.growth_in(at.q))
 
 
 def internal(cable: CableModel, at: Instants) -> np.ndarray:

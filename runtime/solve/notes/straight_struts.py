@@ -41,7 +41,8 @@ class StraightStruts(Note):
             if straight.any() and len(at := np.flatnonzero(straight & np.append(before, straight[:-1]))):
                 # at two times: else something bends it
                 chord = r[at][:, cable.mesh.last] - r[at][:, cable.mesh.first]
-                shortening = 1 - np.linalg.norm(chord, axis=2) / cable.mesh.lengths
+                grown = cable.growth_in(rows["q"][at]) * cable.mesh.all_lengths
+                shortening = 1 - np.linalg.norm(chord, axis=2) / grown
                 forces = (_compressive_stiffness(part) * shortening).max(axis=1)
                 k, force = at[np.argmax(forces)], float(forces.max())
                 bearable = np.min(LineStiffness.of(part, 3).EI_weak) / cable.mesh.total**2
