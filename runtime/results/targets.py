@@ -111,7 +111,8 @@ class _Values:
 def reader(state: Equilibrium, names: Sequence[str]) -> Reader:
     """Return the reader of these values of similar states. Raises SceneError for an unknown name."""
     targets = [target_of(state, name) for name in names]
-    of_supports = any(target.support is not None or target.part in state.scene.ties for target in targets)
+    of_supports = any(target.support is not None or target.part in state.scene.ties or target.part in state.scene.ropes
+                      for target in targets)  # the ends of ropes, too
     return Reader(lambda problem, at: _Values(problem, at).of(targets),
                   np.array([target.unit == "m" for target in targets]), of_supports,
                   frozenset(target.part for target in targets),

@@ -52,6 +52,33 @@ def test_a_warm_rope_is_a_longer_rope_of_the_same_mass(drum):
     assert forces[0] == pytest.approx(forces[1], rel=1e-4)
 
 
+@pytest.mark.parametrize(("temperature", "force"), [(-40, 3624.711844), (0, 3456.022081), (40, 3302.255931)])
+def test_the_span_of_a_line_by_its_pull(temperature, force, validated):
+    """Two lines of 100 m, one above the other, over a wheel of 1 µm on a block that the pull of both draws to 100 m."""
+    radius = 1e-6
+    scene = fu.Scene(gravity=(0, -10, 0), temperature=temperature)
+    scene.rigid_body("block", mass=1.0, inertia=(1, 1, 1), position=(100.3, 0, 0))
+    scene.joint("prismatic", (0, 0, 0), "block", axis=(1, 0, 0))
+    scene.force("block", value=(2 * force, 0, 0))
+    scene.rope("line", route=[fu.Anchor(at=(0, radius, 0)), fu.Sheave("wheel", "block", radius=radius, side="right"),
+                              fu.Anchor(at=(0, -radius, 0))], elements=8, length=200 + np.pi * radius,
+               section=fu.GeneralSection(area=1e-3, second_moment_about_y=1e-24, second_moment_about_z=1e-24),
+               material=fu.Material(youngs_modulus=1e9, poisson_ratio=0.3, density=1000, thermal_expansion=1.2e-5))
+    rest = scene.equilibrium()
+    validated("Statics", f"rope over a wheel, EA 1e6 N, spans of 100 m, 10 N/m, at {temperature} K", "span", 100.0,
+              float(rest["block.position"][0]), unit="m", bound=1e-10, mesh="8 elements in each span",
+              source="elastic catenary, weight kept, 1.2e-5 1/K", note="3e-9 of the pull")
+    assert rest["line.start_force"][0] == pytest.approx(force, rel=1e-8)
+
+
+@pytest.mark.parametrize("parameter", ["rope.length", "rope.temperature"])
+def test_the_force_on_an_anchor_is_a_target(parameter):
+    scene = two_spans(11.8, 0.0)
+    rest = scene.equilibrium(adjust=[parameter], to={"rope.start_force.x": 4e3})
+    assert rest["rope.start_force"][0] == pytest.approx(4e3, rel=1e-9)
+    assert rest.scene.equilibrium()["rope.start_force"] == pytest.approx(rest["rope.start_force"], rel=1e-9)
+
+
 @pytest.mark.parametrize("path", ["temperature", "rope.temperature"])
 def test_a_temperature_lowers_a_body_to_its_place(path):
     own = path != "temperature"
