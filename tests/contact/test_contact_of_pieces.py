@@ -94,6 +94,18 @@ def test_a_part_without_contact_sinks_through(materials):
     assert float(one["bed.last"]) == pytest.approx(1 + float(two["bed.last"]), abs=1e-6)
 
 
+def test_modes_do_not_depend_on_the_division_of_a_contact():
+    """The contact ends at s = 0.797 m, between two points of the rule."""
+    frequencies = []
+    for parts in ([(None, None)], [(None, 0.5), (0.5, None)]):
+        scene = scene_of()
+        for start, stop in parts:
+            scene.contact("w", "ground", stiffness=STIFFNESS, start=start, stop=stop)
+        scene.motion("w", s=0, displacement=(0, "free", 0))
+        frequencies.append(scene.modes(6, about=scene.equilibrium()).frequency)
+    assert frequencies[0] == pytest.approx(frequencies[1], rel=1e-9)
+
+
 def test_section_forces_modes_and_files_know_the_part(tmp_path):
     scene = scene_of(elements=4, y=0.0297, materials=(RUBBER, STEEL))
     scene.motion("w", s=0, displacement=(0, "free", 0))

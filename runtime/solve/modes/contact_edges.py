@@ -33,7 +33,7 @@ def _weigh(contact: ContactModel, depth: np.ndarray) -> None:
         of_one = getattr(contact, name)
         setattr(contact, name, np.broadcast_to(of_one, (contact.n_elements, *of_one.shape[1:])).copy())
     contact.stride, weights = contact.n_points, contact.weights.ravel()
-    ends, active = np.cumsum(weights), depth > 0
+    ends, active = contact.entries["start"] + np.cumsum(weights), depth > 0
     for k in np.flatnonzero(active[:-1] != active[1:]):
         passed = contact.arc[k] + (contact.arc[k + 1] - contact.arc[k]) * depth[k] / (depth[k] - depth[k + 1])
         if active[k]:
