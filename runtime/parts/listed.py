@@ -22,9 +22,9 @@ from .spring import Spring as Spring
 from .fluid import Fluid as Fluid
 from .drag import Drag as Drag
 from .ice import Ice as Ice
+from .working_curve import WorkingCurve as WorkingCurve
 from .branch import Relaxation as Relaxation
 from .branch import WireFriction as WireFriction
-from .working_curve import WorkingCurve as WorkingCurve
 from .crossing import Crossing as Crossing
 from .surface import Surface as Surface
 from .contact import Contact as Contact

@@ -341,6 +341,20 @@ class SceneMethods(SceneData):
     ) -> Ice:
         """Add a Ice, which see."""
 
+    def working_curve(
+        self,
+        cable: Named,
+        *,
+        permanent: float | None = None,
+        form: str = "linear",
+        bend: float = 0.0,
+        strain: Numbers | None = None,
+        force: Numbers | None = None,
+        highest_tension: float = 0.0,
+        name: str | None = None,
+    ) -> WorkingCurve:
+        """Add a WorkingCurve, which see."""
+
     def relaxation(
         self,
         cable: Named,
@@ -360,20 +374,6 @@ class SceneMethods(SceneData):
         name: str | None = None,
     ) -> WireFriction:
         """Add a WireFriction, which see."""
-
-    def working_curve(
-        self,
-        cable: Named,
-        *,
-        permanent: float | None = None,
-        form: str = "linear",
-        bend: float = 0.0,
-        strain: Numbers | None = None,
-        force: Numbers | None = None,
-        highest_tension: float = 0.0,
-        name: str | None = None,
-    ) -> WorkingCurve:
-        """Add a WorkingCurve, which see."""
 
     def crossing(
         self,

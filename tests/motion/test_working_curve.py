@@ -154,6 +154,7 @@ def test_fast_changes_are_stiffer_with_a_relaxation():
     scene = fibres().replace("rope", end=(L + mean, 0, 0), rest_length=L, rest="straight")
     scene = scene.replace("worked", highest_tension=EA * 0.06)
     scene.relaxation("rope", stiffness=K, time=TAU, name="fast")
+    assert fu.Scene.from_toml(scene.to_toml()).to_toml() == scene.to_toml()
     wave = fu.Harmonic(amplitude=-amplitude, frequency=frequency, phase=np.pi / 2, offset=amplitude)
     scene.motion("rope", s=L, displacement=(wave, 0, 0))
     run = scene.run(cycles / frequency, output_step=1 / (40 * frequency), integrator="genalpha",
