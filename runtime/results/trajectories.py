@@ -27,7 +27,7 @@ def default_outputs(scene: SceneData) -> list[str]:
     Without any, the speeds of ropes at their sheaves and drums.
     """
     supported = {node_of(scene, support) for support in scene.supports}
-    places = [f"{name}.{'middle' if (name, cable.elements) in supported else 'tip'}"
+    places = [f"{name}.{'middle' if (name, cable.mesh.n_nodes - 1) in supported else 'tip'}"
               for name, cable in scene.cables.items()]
     found = [f"{name}.position" for name in scene.bodies] + [f"{name}.s" for name in scene.slides] + places
     return found or [f"{wheel.name}.material_speed" for rope in scene.ropes.values() for wheel in rope.wheels]

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from funicular import Circle, Material, Ramp, Scene, load_run, load_scene
+from funicular import Circle, Material, Piece, Ramp, Scene, load_run, load_scene
 from funicular.results.trajectories import default_outputs, relative, trajectory
 
 RUBBER = Material(youngs_modulus=5e6, poisson_ratio=0.0, density=1100)
@@ -42,6 +42,16 @@ def test_the_run_itself_is_the_same():
     plain, estimated = (pendulum().run(0.1, estimate=estimate) for estimate in (False, True))
     assert "errors" not in plain.report
     assert np.array_equal(plain["rod.nodal_vectors"], estimated["rod.nodal_vectors"])
+
+
+def test_the_output_of_pieces_between_two_pins_is_their_middle():
+    """A joint of unlike pieces has two nodes, so that the last node has another number than the last element ends."""
+    scene = Scene()
+    scene.cable("rod", start=(0, 0, 0), end=(1, 0, 0), element="cable8p", pieces=[
+        Piece(length=0.5, section=Circle(radius=radius), material=RUBBER, elements=2) for radius in (0.02, 0.03)])
+    for s in (0, 1):
+        scene.pin("rod", s=s)
+    assert default_outputs(scene) == ["rod.middle"]
 
 
 def test_a_file_keeps_the_errors(tmp_path):

@@ -130,6 +130,8 @@ def refuse_what_is_not_linear(scene: SceneData, model: Model) -> None:
                              f"leave it out, or {remedy}")
     for curve in scene.working_curves.values():
         raise SceneError(curve.where, f"{who} does not support working curves of ropes", f"leave it out, or {remedy}")
+    for ice in scene.ices.values():
+        raise SceneError(ice.where, f"{who} does not support ice", f"leave it out, or {remedy}")
     for joint in scene.joints.values():
         if joint.friction is not None:
             raise SceneError(joint.where, f"{who} does not support friction of joints", f"leave it out, or {remedy}")
