@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from ..parts.validation import show, shown
 from ..scene.scene import Scene
 from .moordyn_file import MoorDynFile, Row, named, read_file
 from .moordyn_laws import AxialLaw
+from .moordyn_syrope import Loaded
 
 DEFAULTS = {"g": 9.80665, "rhow": 1025.0, "wtrdpth": 0.0, "kbot": 3e6, "cbot": 3e5, "frictioncoefficient": 0.0}
 """Options by their names in small letters, with MoorDyn's defaults."""
@@ -171,6 +173,7 @@ class _Reader:
         self.types = file.by_id("line types", lambda row: LineType.of(row, Path(file.name).parent))
         self.scene = Scene(gravity=(0, 0, -self.options["g"]))
         self.ends: dict[str, list[tuple[str, float]]] = {name: [] for name in self.points}
+        self.loaded = self._mean_tensions()
 
     def read(self) -> Scene:
         """Return the scene, whose messages are the notes."""
@@ -204,9 +207,38 @@ class _Reader:
                 self.notes.append(f"{row.where}: the option {shown(row.words[1])} is not known and is left out")
         return found
 
+    def _mean_tensions(self) -> dict[str, Loaded]:
+        """Return the mean tensions before the start by lines. Raises SceneError."""
+        found: dict[str, Loaded] = {}
+        lines = self.file.by_id("lines", lambda row: row)
+        for row in self.file.rows("mean tensions"):
+            loaded = Loaded(row.number(1, "Tmax0"), row.number(2, "Tmean0"))
+            if not loaded.highest >= loaded.mean >= 0:
+                raise row.refused(f"Tmax0 must be at least Tmean0, and both not negative, got {show(loaded.highest)} "
+                                  f"and {show(loaded.mean)} N")
+            for name in row.words[0].split(","):
+                named(lines, name, row, "line")
+                found[name] = loaded
+        return found
+
+    def _memory(self, row: Row, name: str, kind: LineType, loaded: Loaded) -> None:
+        """Add the working curve and the viscosity of a line."""
+        axial = kind.axial
+        if axial.curves is not None and axial.table is not None:
+            self.scene.working_curve(name, **axial.curves.curve(row, axial.table, loaded), name=f"{name}_curve")
+            self.notes.append(f"{row.where}: the stiffness of fast changes is that of the mean tension "
+                              f"{show(loaded.mean, 'N')}, and stays")
+            if axial.curves.depends_on_tension:
+                self.notes.append(f"{row.where}: the working curve is that from the highest tension "
+                                  f"{show(loaded.highest, 'N')}; from other ones it is scaled in both directions")
+        if axial.spring:
+            self.scene.relaxation(name, stiffness=axial.spring, time=axial.time, name=f"{name}_viscosity")
+
     def _line(self, row: Row) -> None:
         """Add a line as a cable with its drag and its contact with the bed."""
         name, kind = f"line_{row.words[0]}", named(self.types, row.word(1, "LineType"), row, "line type")
+        loaded = self.loaded.get(row.words[0], Loaded())
+        kind = replace(kind, axial=kind.axial.under(row, loaded))
         if name in self.scene.cables:
             raise row.refused(f"there is already a line {shown(row.words[0])} of lines", "give each its own ID")
         ends = [self._end(row, k) for k in (2, 3)]
@@ -220,8 +252,7 @@ class _Reader:
                 name, start=tuple(start.tolist()), end=tuple(end.tolist()), rest="straight", rest_length=length,
                 elements=int(segments), element="cable12", strain="engineering", membrane=kind.membrane,
                 section=kind.section(), material=kind.material(length / segments))
-            if kind.axial.spring:
-                self.scene.relaxation(name, stiffness=kind.axial.spring, time=kind.axial.time, name=f"{name}_viscosity")
+            self._memory(row, name, kind, loaded)
             self._drag(name, kind)
             self._bed(name, kind)
         for s, each in zip((0.0, cable.length), ends, strict=True):
@@ -316,6 +347,8 @@ class _Reader:
         for table in ("rod types", "rods", "failures", "control"):
             if rows := self.file.rows(table):
                 self.notes.append(f"{rows[0].where}: {table} are left out")
+        for kind in self.types.values():
+            self.notes += kind.axial.notes
         if any(kind.diameter == 0 for kind in self.types.values()):
             self.notes.append("lines of diameter 0 have no water and no bed")
 
@@ -350,7 +383,8 @@ def read_moordyn(path: str | os.PathLike[str]) -> Scene:
     Lines become cables of the names line_1, line_2, ... with as many elements as they have segments, in water up to
     z = 0 above an even bed; fixed and coupled points hold them by pins, free points are ties of line ends with a
     `PointMass`; free bodies are rigid bodies, others hold the points on them. Lines pull alone, by EA, by the table of
-    a file (`TensionTable`, a cubic between its points), or by static|dynamic stiffness, which is EA with a
-    `Relaxation`. The run starts from rest. ``messages`` of the scene say what it leaves out. Raises SceneError.
+    a file (`TensionTable`, a cubic between its points), by static|dynamic stiffness, which is EA with a `Relaxation`,
+    or as ropes of fibres (SYROPE) by a table with a `WorkingCurve` and a `Relaxation`. The run starts from rest.
+    ``messages`` of the scene say what it leaves out. Raises SceneError.
     """
     return _Reader(read_file(path)).read()

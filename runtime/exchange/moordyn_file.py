@@ -16,7 +16,8 @@ from ..parts.validation import shown
 TABLES = {"line types": ("LINE TYPES", "LINE DICTIONARY"), "rod types": ("ROD TYPES", "ROD DICTIONARY"),
           "bodies": ("BODIES", "BODY LIST", "BODY PROPERTIES"), "rods": ("RODS", "ROD LIST", "ROD PROPERTIES"),
           "points": ("POINTS", "POINT LIST", "POINT PROPERTIES", "CONNECTION PROPERTIES", "NODE PROPERTIES"),
-          "lines": ("LINES", "LINE LIST", "LINE PROPERTIES"), "failures": ("FAILURE",), "control": ("CONTROL",),
+          "lines": ("LINES", "LINE LIST", "LINE PROPERTIES"), "mean tensions": ("SYROPE IC",),
+          "failures": ("FAILURE",), "control": ("CONTROL",),
           "options": ("OPTIONS",), "outputs": ("OUTPUT",)}
 """Words of the heading of each table, the first that fits."""
 WITHOUT_NAMES = "options", "outputs"

@@ -113,6 +113,72 @@ def test_static_and_dynamic_stiffness(dampings, tmp_path):
         assert ours == pytest.approx(first * second / (first + second), rel=1e-12)
 
 
+FIBRES = ("1e7 1e5", "SYROPE:rope.dat|1.5e8|23 5e10|1e5")
+HIGHEST, MEAN, TOP = 1.3e6, 4e5, 0.0225
+SHARE = MEAN / HIGHEST
+CURVES = {"LINEAR": (0.3, 0.0, SHARE, 1.0), "QUADRATIC": (0.25, 1.0, SHARE**0.5, 2 * SHARE**0.5),
+          "EXP": (0.2, 1.5, np.log1p(SHARE * np.expm1(1.5)) / 1.5, 1.5 * (SHARE + 1 / np.expm1(1.5)))}
+"""k1, k2, and of the shape from 0 to 1 the place and the slope where it is MEAN over HIGHEST."""
+
+
+def fibres(folder: Path, form: str, k1: float, k2: float, points: str = "0 0\n0.0225 1.3e6\n0.06 4.4e6\n") -> fu.Scene:
+    """Return the scene of a file with a rope of fibres."""
+    (folder / "rope.dat").write_text(f"curve.dat OWC of loading\n{form} WCType\n{k1} k1\n{k2} k2\n", encoding="utf-8")
+    (folder / "curve.dat").write_text("rope\nstrain tension\n- N\n" + points, encoding="utf-8")
+    tensions = f"--- SYROPE IC ---\nLine(s) Tmax0 Tmean0\n(-) (N) (N)\n3 {HIGHEST} {MEAN}\n"
+    return of(folder, FIBRES, ("---------------------- OPTIONS", tensions + "--- OPTIONS"))
+
+
+@pytest.mark.parametrize("form", CURVES)
+def test_ropes_of_fibres(form, tmp_path):
+    """Working curves below the highest tension, and the impedance of fast changes at the mean tension."""
+    k1, k2, place, slope = CURVES[form]
+    scene = fibres(tmp_path, form, k1, k2)
+    cable, curve, branch = (of["line_3" + name] for of, name in (
+        (scene.cables, ""), (scene.working_curves, "_curve"), (scene.branches, "_viscosity")))
+    first = cable.section.tension_table.numbers()
+    low = k1 * TOP
+    strain = low + place * (TOP - low)
+    assert curve.force_at(first, np.array([strain]), np.array([TOP])) == pytest.approx(MEAN, rel=1e-4)  # 20 segments
+    assert curve.highest_tension == HIGHEST
+    static, dynamic = slope * HIGHEST / (TOP - low), 1.5e8 + 23 * MEAN
+    for p in 1j * np.array([1e-4, 1e-3, 0.1, 10]):
+        first, second = dynamic * static / (dynamic - static) + 5e10 * p, dynamic + 1e5 * p
+        ours = (static + cable.material.damping_time * cable.material.youngs_modulus * cable.section.area * p
+                + branch.stiffness * branch.time * p / (1 + branch.time * p))
+        assert ours == pytest.approx(first * second / (first + second), rel=1e-9)
+    assert fu.Scene.from_toml(scene.to_toml()).to_toml() == scene.to_toml()
+
+
+def test_a_working_curve_by_its_slope_is_that_from_the_highest_tension(tmp_path):
+    """LINEAR with k1 in N, and a file of first loading whose points begin above 0 and are more than a table takes."""
+    strains = np.linspace(0.002, 0.06, 30)
+    scene = fibres(tmp_path, "LINEAR", 1.2e8, 0, "".join(f"{x} {HIGHEST * x / TOP * (1 + x)}\n" for x in strains))
+    table, curve = scene.cables["line_3"].section.tension_table, scene.working_curves["line_3_curve"]
+    top = table.strain_at(HIGHEST)
+    assert top * (1 - curve.permanent) == pytest.approx(HIGHEST / 1.2e8, rel=1e-12)
+    assert len(table.strain) == 20
+    said = "\n".join(scene.messages)
+    for part in ("curve.dat: begins at the strain 0.002", "20 of 31 points are taken", "the working curve is that from",
+                 "the stiffness of fast changes is that of the mean tension"):
+        assert part in said, said
+
+
+BAD_FIBRES = {
+    "k1": ("QUADRATIC", 1.2, 1.0, "rope.dat, line 3: k1 must be from 0 to below 1 with QUADRATIC, got 1.2"),
+    "form": ("CUBIC", 0.2, 1.0, "rope.dat, line 2: WCType 'CUBIC' is not known; known: LINEAR, QUADRATIC, EXP"),
+    "stiff": ("LINEAR", 0.8, 0.0, "lines.txt, line 20: the stiffness of fast changes, 159200000 N at the mean tension "
+              "400000 N, must be above that of slow ones there, 288888889 N"),
+}
+
+
+@pytest.mark.parametrize("case", BAD_FIBRES)
+def test_refusals_of_ropes_of_fibres(case, tmp_path):
+    *given, message = BAD_FIBRES[case]
+    with refused(f"{tmp_path}/{message}"):
+        fibres(tmp_path, *given)
+
+
 def test_what_it_leaves_out_is_said(tmp_path):
     options = ("9.81 g", "9.81 g\n1 WaveKin\nbed.txt SeafloorFile\n3 depthCharge")
     scene = of(tmp_path, options, ("2 Fixed 0 -100 -100 0", "2 Fixed 0 -100 -100 7"),
@@ -127,7 +193,7 @@ def test_what_it_leaves_out_is_said(tmp_path):
 
 BAD = {
     "law": ("5e8", "5e8|6e8|0.4", 6, "the axial law '5e8|6e8|0.4' is not read; known: a number, a file of strain and "
-            "tension, static|dynamic stiffness"),
+            "tension, static|dynamic stiffness, SYROPE:file|stiffness|its growth"),
     "stiffness": ("5e8", "5e8|4e8", 6, "EA must be static|dynamic stiffness, the dynamic one larger, got '5e8|4e8'"),
     "EA": ("5e8", "-5e8", 6, "EA must be positive, got -500000000"),
     "dampings": ("-0.8 0 1.6", "1e6|1e5 0 1.6", 6, "BA must have no more numbers than EA, got '1e6|1e5'"),
@@ -145,7 +211,7 @@ BAD = {
     "columns": ("ID LineType AttachA AttachB UnstrLen", "Line LineType UnstrLen", 16, "has the columns of MoorDyn-1; "
                 "give those of MoorDyn-2: ID LineType AttachA AttachB UnstrLen NumSegs Outputs"),
     "heading": ("- OPTIONS -", "- OPTOINS -", 21, "the heading 'OPTOINS' is not known; known: LINE TYPES, ROD TYPES, "
-                "BODIES, RODS, POINTS, LINES, FAILURE, CONTROL, OPTIONS, OUTPUT"),
+                "BODIES, RODS, POINTS, LINES, SYROPE IC, FAILURE, CONTROL, OPTIONS, OUTPUT"),
     "depth": ("100 WtrDpth", "bed.txt WtrDpth", 28, "WtrDpth must be a number, got 'bed.txt'; files are read of "
               "the axial stiffness alone: give one number, and the law in the scene written"),
     "nan": ("0 100 -100", "0 nan -100", 11, "Y must be a number, got 'nan'; files are read of the axial stiffness "
