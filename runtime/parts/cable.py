@@ -124,6 +124,13 @@ class Cable(DrawnCable, CableFields):
         if self.pieces[0].hinge:
             raise ValueError("begins with a piece at a hinge, which joins a piece to the one before it",
                              "leave hinge out of the first piece")
+        lengths = [piece.length / piece.elements for piece in self.pieces]
+        if max(lengths) > cable_mesh.MAX_LENGTH_RATIO * min(lengths):
+            k = lengths.index(min(lengths))
+            raise ValueError(f"pieces.{k} of {show(self.pieces[k].length, 'm')} has elements of "
+                             f"{show(lengths[k], 'm')}: the longest of the cable is {max(lengths) / lengths[k]:.3g} "
+                             f"times as long, at most {cable_mesh.MAX_LENGTH_RATIO:g} times is allowed",
+                             "give it fewer elements or more length, or leave it out")
         if self.rest == "drawn" and not self._shape.straight:
             raise ValueError("is drawn curved and has pieces, whose stress-free shape is straight",
                              'give rest="straight"')

@@ -8,6 +8,7 @@ from pydantic import BeforeValidator, Field
 
 from ..base.rotations import unit
 from ..engine import MAX_WAVES
+from ..errors import SceneError
 from .part import Part
 from .validation import Vector, direction, finite, items, positive, shown
 
@@ -87,13 +88,18 @@ def jonswap(*, significant_height: float, peak_period: float, peakedness: float 
     seed: of the phases
     direction: in which they run, level
 
+    Raises SceneError.
+
     >>> import funicular as fu
     >>> sea = fu.jonswap(significant_height=2.0, peak_period=8.0, components=50)
     >>> len(sea), round(sum(wave.amplitude**2 / 2 for wave in sea), 12)
     (50, 0.25)
     """
+    for name, given, units in (("significant_height", significant_height, "m"), ("peak_period", peak_period, "s")):
+        if not 0 < given < math.inf:
+            raise SceneError("jonswap", f"{name} must be positive, got {given:g} {units}")
     if not (peakedness >= 1 and 1 <= components <= MAX_WAVES):
-        raise ValueError(f"jonswap: peakedness must be at least 1 and components from 1 to {MAX_WAVES}, got "
+        raise SceneError("jonswap", f"peakedness must be at least 1 and components from 1 to {MAX_WAVES}, got "
                          f"{peakedness} and {components}")
     x = np.linspace(*SPECTRUM, 20001)  # frequency over that of the peak
     width = np.where(x <= 1, *PEAK_WIDTHS)

@@ -7,7 +7,7 @@ import funicular as fu
 import numpy as np
 import pytest
 import waves as cases
-from expectations import unaccounted
+from expectations import refused, unaccounted
 
 INTEGRATORS = ("genalpha", "explicit", "radau")
 WATER, G = 1025.0, 9.81
@@ -58,6 +58,8 @@ def test_the_variance_of_a_sea_is_that_of_its_significant_height(validated):
     assert sea == fu.jonswap(significant_height=3.0, peak_period=9.0, components=200, seed=7)
     assert sea != fu.jonswap(significant_height=3.0, peak_period=9.0, components=200, seed=8)
     assert sum(wave.amplitude**2 / 2 for wave in sea) == pytest.approx(9 / 16, rel=1e-12)
+    with refused("jonswap: significant_height must be positive, got -3 m"):
+        fu.jonswap(significant_height=-3.0, peak_period=9.0)
     found, exact = cases.variance_of_sea(200)
     validated("Fluid", "sea of 200 waves by JONSWAP's spectrum, six hours", "variance of the elevation", exact, found,
               unit="m²", bound=2e-2, source="Hs²/16")

@@ -262,6 +262,9 @@ PIECE = fu.Piece(length=5, section=SECTION, material=SOFT, elements=4)
                                   for material, length in ((SOFT, 0.3), (STIFF, 5.7))]},
      "element 2 of 2 cannot follow the curve"),
     ({}, "section is missing"),
+    ({"pieces": [PIECE, PIECE.remade({"length": 1e-5, "elements": 20})]},
+     "pieces.1 of 1e-05 m has elements of 5e-07 m: the longest of the cable is 2.5e+06 times as long, at most 1e+06 "
+     "times is allowed"),
 ])
 def test_bad_pieces_are_refused(entries, message):
     given = {"start": (0, 0, 0), "end": (5, 0, 0), **entries}
