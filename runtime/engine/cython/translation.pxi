@@ -319,7 +319,7 @@ cdef class Translation(Arrays):
             return
         cdef int most = elimination.pivots[banded.front]
         banded.most_entries = self._counted(most * most // 2 + most)
-        banded.most_numbers = banded.most_entries
+        banded.most_numbers = self._counted(most * most // 2 + (1 + FU_BANDED_PADDING) * most)
         banded.first, banded.rows = self._int_zeros(most + 1), self._int_zeros(banded.most_entries)
         banded.child, banded.order = self._int_zeros(most), self._int_zeros(most)
         banded.place, banded.pivot = self._int_zeros(most), self._int_zeros(most)

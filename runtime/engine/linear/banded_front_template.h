@@ -1,7 +1,7 @@
 /* A front without neighbours whose matrix is a band in another order, as that of many slides on one cable: each is
  * coupled to those in the same substructures. Slides move, so that the order is found anew with each factorisation. A
- * file that includes this has defined what fronts_template.h asks for, and SUBTRACT(n, column, factor, to), which
- * subtracts a column times a factor from n numbers, and FACTOR_BAND (LAPACK's gbtrf). */
+ * file that includes this has defined what fronts_template.h asks for, and SUBSTITUTE(banded, x), which solves with a
+ * factored band in place, in its order, and FACTOR_BAND (LAPACK's gbtrf). */
 
 /* Lists the non-zero entries of the matrix of a front by columns; returns 0 where there are too many for a band. */
 FU_INLINE int PREFIX(list_entries)(fu_banded_front *b, const NUMBER *matrix, int n)
@@ -59,8 +59,8 @@ FU_INLINE int PREFIX(factor_banded)(const fu_fronts *t, const NUMBER *matrix, fu
     if (!b->is_listed) return 0;
     fu_order_band(t, b, k);
     fu_find_width(t, b, k);
-    int stride = 2 * b->lower + b->upper + 1;
-    if (2 * stride > n) return 0;
+    int stride = fu_banded_stride(b);
+    if (2 * (stride - FU_BANDED_PADDING) > n) return 0;
     b->n = n;
     PREFIX(fill_band)(t, f, k, matrix, stride);
     lapack->FACTOR_BAND(&n, &n, &b->lower, &b->upper, b->band, &stride, b->pivot, info);
@@ -71,18 +71,7 @@ FU_INLINE int PREFIX(factor_banded)(const fu_fronts *t, const NUMBER *matrix, fu
 /* Solves with a factored band in place; work: n numbers. */
 FU_INLINE void PREFIX(solve_banded)(const fu_banded_front *b, NUMBER *x, NUMBER *work)
 {
-    const int n = b->n, lower = b->lower, diagonal = b->lower + b->upper, stride = diagonal + b->lower + 1;
-    const NUMBER *column = (const NUMBER *)b->band;
-    for (int j = 0; j < n; ++j) work[j] = x[b->order[j]];
-    for (int j = 0; j < n; ++j, column += stride) {
-        PREFIX(swap)(work + j, work + b->pivot[j] - 1, 1, 1);
-        SUBTRACT(n - 1 - j < lower ? n - 1 - j : lower, column + diagonal + 1, work[j], work + j + 1);
-    }
-    for (int j = n - 1; j >= 0; --j) {
-        const int most = j < diagonal ? j : diagonal;
-        column -= stride;
-        work[j] = DIVIDE(work[j], column[diagonal]);
-        SUBTRACT(most, column + diagonal - most, work[j], work + j - most);
-    }
-    for (int j = 0; j < n; ++j) x[b->order[j]] = work[j];
+    for (int j = 0; j < b->n; ++j) work[j] = x[b->order[j]];
+    SUBSTITUTE(b, work);
+    for (int j = 0; j < b->n; ++j) x[b->order[j]] = work[j];
 }

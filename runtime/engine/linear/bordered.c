@@ -194,6 +194,21 @@ int fu_list_blocks(const fu_system *s, int strip, const fu_span rows[FU_HALVES],
     return n;
 }
 
+/* Sets a column of X to zero beside its significant rows, which become one block where few are between them. */
+static void clear_insignificant(const fu_system *s, int strip, double *x, fu_span rows[FU_HALVES])
+{
+    const int chain = s->strips[strip].chain, begin = s->chains[chain], end = s->chains[chain + 1];
+    fu_span one = rows[0], other = rows[1];
+    if (!one.end) one = (fu_span){begin, begin};
+    if (!other.end) other = (fu_span){end, end};
+    for (int i = begin; i < one.first; ++i) x[i] = 0.0;
+    for (int i = one.end; i < other.first; ++i) x[i] = 0.0;
+    for (int i = other.end; i < end; ++i) x[i] = 0.0;
+    if (!rows[0].end || !rows[1].end || other.first - one.end > s->width) return;
+    rows[0].end = other.end;
+    rows[1] = (fu_span){s->n, 0};
+}
+
 /* Computes a column of X = K^-1 B in a chain. */
 static void solve_column(fu_system *s, int strip)
 {
@@ -208,6 +223,7 @@ static void solve_column(fu_system *s, int strip)
         for (int i = of[half].first; i < of[half].end; ++i) x[i] = B[i];
     solve_chain(s, chain, (fu_span){of[of[0].end == 0].first, of[of[1].end != 0].end}, x);
     fu_find_significant(s, strip, x, rows);
+    clear_insignificant(s, strip, x, rows);
 }
 
 /* Returns whether a strip has entries or may come to have them. */
@@ -298,18 +314,53 @@ static void solve_border(const fu_system *s, const fu_lapack *lapack, double *y)
     else lapack->dgetrs("N", &m, &one, s->D, &m, s->pivot_border, y, &m, &info);
 }
 
+/* Subtracts from the rows of x a column of X times a factor. */
+FU_INLINE void take_column(fu_span rows, const double *column, double factor, double *x)
+{
+    long i = rows.first;
+    const long end = rows.end;
+    for (; i + FU_SIMD_WIDTH <= end; i += FU_SIMD_WIDTH)
+        *(fu_simd_block *)(x + i) -= *(const fu_simd_block *)(column + i) * factor;
+    for (; i < end; ++i) x[i] -= factor * column[i];
+}
+
+enum { TAKEN = 4 }; /* columns for which x passes through the registers once */
+
+/* Takes TAKEN columns of a chain, one after the other. Most have the same rows, and are zero beyond them: whole blocks
+ * of rows from the first of any to the last of any. */
+FU_INLINE void take_columns_at_once(const fu_system *s, const fu_matrix_block *p, const double *y, double *x)
+{
+    const double *column[TAKEN];
+    double factor[TAKEN];
+    fu_span all = p->rows;
+    int sum = 0;
+    for (int k = 0; k < TAKEN; ++k) {
+        const fu_span rows = p[k].rows;
+        column[k] = s->X + s->strips[p[k].strip].x;
+        factor[k] = y[p[k].k];
+        all = (fu_span){rows.first < all.first ? rows.first : all.first, rows.end > all.end ? rows.end : all.end};
+        sum += rows.end - rows.first;
+    }
+    if (2 * (all.end - all.first) > sum) { /* TAKEN / 2 times as many as there are */
+        for (int k = 0; k < TAKEN; ++k) take_column(p[k].rows, column[k], factor[k], x);
+        return;
+    }
+    for (long i = all.first; i < all.end; i += FU_SIMD_WIDTH) {
+        fu_simd_block of = *(fu_simd_block *)(x + i);
+        of -= *(const fu_simd_block *)(column[0] + i) * factor[0];
+        of -= *(const fu_simd_block *)(column[1] + i) * factor[1];
+        of -= *(const fu_simd_block *)(column[2] + i) * factor[2];
+        of -= *(const fu_simd_block *)(column[3] + i) * factor[3];
+        *(fu_simd_block *)(x + i) = of;
+    }
+}
+
 FU_INLINE void take(const fu_system *s, const double *y, double *x)
 {
     for (int c = 0; c < s->n_chains; ++c) {
-        const fu_matrix_block *columns = s->columns + FU_HALVES * s->chain_start[c];
-        for (const fu_matrix_block *p = columns; p < columns + s->n_columns[c]; ++p) {
-            const double *column = s->X + s->strips[p->strip].x, scale = y[p->k];
-            const long end = p->rows.end;
-            long i = p->rows.first;
-            for (; i + FU_SIMD_WIDTH <= end; i += FU_SIMD_WIDTH)
-                *(fu_simd_block *)(x + i) -= *(const fu_simd_block *)(column + i) * scale;
-            for (; i < end; ++i) x[i] -= scale * column[i];
-        }
+        const fu_matrix_block *p = s->columns + FU_HALVES * s->chain_start[c], *end = p + s->n_columns[c];
+        for (; p + TAKEN <= end; p += TAKEN) take_columns_at_once(s, p, y, x);
+        for (; p < end; ++p) take_column(p->rows, s->X + s->strips[p->strip].x, y[p->k], x);
     }
 }
 

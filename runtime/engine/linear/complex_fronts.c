@@ -16,7 +16,7 @@
 #define BACK substituted
 #define FACTOR zgetrf
 #define FACTOR_BAND zgbtrf
-#define SUBTRACT subtract
+#define SUBSTITUTE substitute
 
 /* Subtracts from n numbers a column times a factor. */
 static void subtract(int n, const fu_complex *column, fu_complex factor, fu_complex *to)
@@ -45,6 +45,26 @@ static void substituted(const fu_complex *F, int stride, int n, int done, fu_com
         const fu_complex *column = k < done ? F + k * n : F + done * n + (k - done) * stride;
         if (k < done) x[k] = fu_complex_product(x[k], column[k]);
         for (int i = 0; i < (k < done ? k : done); ++i) fu_complex_subtract_product(&x[i], column[i], x[k]);
+    }
+}
+
+/* Solves with a factored band in place, in its order. */
+static void substitute(const fu_banded_front *b, fu_complex *x)
+{
+    const int n = b->n, lower = b->lower, diagonal = b->lower + b->upper, stride = fu_banded_stride(b);
+    const fu_complex *column = (const fu_complex *)b->band;
+    for (int j = 0; j < n; ++j, column += stride) {
+        const int row = b->pivot[j] - 1;
+        const fu_complex saved = x[j];
+        x[j] = x[row];
+        x[row] = saved;
+        subtract(n - 1 - j < lower ? n - 1 - j : lower, column + diagonal + 1, x[j], x + j + 1);
+    }
+    for (int j = n - 1; j >= 0; --j) {
+        const int most = j < diagonal ? j : diagonal;
+        column -= stride;
+        x[j] = fu_complex_quotient(x[j], column[diagonal]);
+        subtract(most, column + diagonal - most, x[j], x + j - most);
     }
 }
 

@@ -1,5 +1,5 @@
 /* Elimination of the border of a real system by fronts. */
-#include "linear/columns.h"
+#include "linear/banded_columns.h"
 #include "linear/linear.h"
 
 #define NUMBER double
@@ -16,7 +16,7 @@
 #define BACK backward
 #define FACTOR dgetrf
 #define FACTOR_BAND dgbtrf
-#define SUBTRACT subtract_one
+#define SUBSTITUTE substitute_banded
 
 /* Subtracts from twice n numbers the sum of four columns, at a distance of `stride`, times factors of each. */
 FU_INLINE void subtract_four_from_two(long n, const double *column, int stride, const double f[4], const double g[4],

@@ -32,8 +32,18 @@ typedef struct {
     int *child;                     /* of each unknown a child of which it is a neighbour, -1 for none */
     int *order, *place;             /* the unknown at each place in the band, and the reverse */
     int *pivot;
-    double *band; /* in LAPACK's storage; complex numbers take two doubles */
+    double *band; /* in LAPACK's storage with FU_BANDED_PADDING rows of zeros; complex numbers take two doubles */
 } fu_banded_front;
+
+/* Zeros at the end of a column of such a band: blocks of four rows of four columns may go on there, from the last row
+ * of the first column, and before the first row of the last column. */
+enum { FU_BANDED_PADDING = 6 };
+
+/* Returns the numbers of a column of such a band. */
+static inline int fu_banded_stride(const fu_banded_front *banded)
+{
+    return 2 * banded->lower + banded->upper + 1 + FU_BANDED_PADDING;
+}
 
 void fu_order_band(const fu_fronts *fronts, fu_banded_front *banded, int k);
 void fu_find_width(const fu_fronts *fronts, fu_banded_front *banded, int k);
