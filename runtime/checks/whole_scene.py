@@ -103,14 +103,10 @@ def check_comes_to_rest(scene: SceneData) -> None:
             if not _is_constant(signal):
                 raise SceneError(part.where, f"{name} changes with time, so that the scene does not come to rest",
                                  "take a constant value, with scene.replace")
-    for slide in scene.slides.values():
-        if slide.friction is not None and not slide.friction.sticks and slide.friction.sliding > 0:
-            raise SceneError(slide.where, "its friction is regularised, so that a rider creeps and never comes to rest",
+    for part in scene.rubbing:
+        if part.friction is not None and not part.friction.sticks and part.friction.sliding > 0:
+            raise SceneError(part.where, "its friction is regularised, so that it creeps and never comes to rest",
                              'take model="stick", which holds it, or leave friction out')
-    for joint in scene.joints.values():
-        if joint.friction is not None and joint.friction.coefficient:
-            raise SceneError(joint.where, "its friction is regularised, so that it creeps and never comes to rest",
-                             "leave friction out")
     for contact in scene.contacts.values():
         if contact.a in scene.ropes and contact.friction_coefficient:
             why = ("its friction has no part in a state of rest: springs along a rope begin a motion without stretch"

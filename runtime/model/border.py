@@ -147,7 +147,8 @@ class _Border:
         """Add the internal unknowns of a coupling, adjacent to all its places."""
         bodies = {body for end in coupling.ends for body in self._bodies_of(end)}
         bodies |= {group for dofs in coupling.adjacent for group in self._of_unknowns(self._unknowns(dofs)).groups}
-        internal = self.graph.group(unknowns, None if coupling.follows_law else bodies)
+        law_alone = coupling.follows_law and not coupling.n_multipliers
+        internal = self.graph.group(unknowns, None if law_alone else bodies)
         for place in places:
             self._couple({internal}, place)
         if not isinstance(coupling, SlideModel):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cache
+from functools import cache, partial
 from typing import ClassVar
 
 import numpy as np
@@ -163,7 +163,7 @@ class JointFrictionModel(CouplingModel):
     """Friction of a joint against the motions that it leaves free.
 
     arms: from the rates of these motions to the speed of sliding, m or 1. of: the joint, whose force presses unless
-    there is a normal force, N; friction_scale: number of the signal of a factor of both coefficients, or -1.
+    there is a normal force, N; friction_scale: number of the signal of a factor of the coefficients, or -1.
     """
 
     keeps_forces: ClassVar[bool] = False
@@ -173,6 +173,7 @@ class JointFrictionModel(CouplingModel):
     arms: tuple[float, float]
     normal_force: float
     coefficient: float
+    static_coefficient: float
     viscous: float
     velocity: float
     friction_scale: int
@@ -188,10 +189,14 @@ class JointFrictionModel(CouplingModel):
         return True
 
 
-def friction_models(builder: ModelBuilder) -> Iterator[JointFrictionModel]:
-    """Yield the friction of the joints of the scene, whose models the builder has."""
+class JointStickingModel(JointFrictionModel):
+    """Friction of a joint that sticks, with a multiplier of the one motion that it locks at rest."""
+
+
+def friction_models(builder: ModelBuilder, sticks: bool = False) -> Iterator[JointFrictionModel]:
+    """Yield the friction of the joints of the scene, whose models the builder has, that sticks or is regularised."""
     for joint, of in builder.joints:
-        if joint.friction is not None:
+        if joint.friction is not None and joint.friction.sticks == sticks:
             yield _friction(builder, joint, of, joint.friction)
 
 
@@ -202,11 +207,14 @@ def _friction(builder: ModelBuilder, joint: Joint, of: JointModel, friction: Fri
         kind = "sliding"
     made = _model(joint.name or "", kind, dim, [*of.attachments], -1, 0.0)
     number, factor = builder.signals.scale(friction.scale, friction.when, friction.until)
-    return JointFrictionModel(
+    return (JointStickingModel if friction.sticks else JointFrictionModel)(
         made.kernel, made.attachments, of, (1.0 if kind == "sliding" else joint.radius or 0.0, 1.0),
-        joint.normal_force or 0.0, factor * friction.coefficient, factor * friction.viscous, friction.velocity, number,
-        type="joint_friction", name=made.name, scale=made.scale, follows_law=True, is_damped=True,
+        joint.normal_force or 0.0, factor * friction.coefficient, factor * friction.static_friction,
+        factor * friction.viscous, friction.velocity, number,
+        type="joint_sticking" if friction.sticks else "joint_friction", name=made.name, scale=made.scale,
+        n_multipliers=len(made.scale) * friction.sticks, follows_law=True, is_damped=True,
         needs_reactions=joint.normal_force is None and friction.coefficient > 0)
 
 
-KINDS = (CouplingKind("joint", Joint.group, joint_models), CouplingKind("joint_friction", Joint.group, friction_models))
+KINDS = (CouplingKind("joint", Joint.group, joint_models), CouplingKind("joint_friction", Joint.group, friction_models),
+         CouplingKind("joint_sticking", Joint.group, partial(friction_models, sticks=True)))

@@ -5,6 +5,7 @@ The quantities are those in ``results`` of the parts. All are along the ground's
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field
 
@@ -17,7 +18,7 @@ from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
 from ..parts.support import Support
 from .coupling import CouplingModel
-from .joints import JointFrictionModel
+from .joints import JointFrictionModel, JointStickingModel
 from .kinds import COUPLINGS
 from .model import Model
 from .rope_states import coordinates, end_forces, rope_state
@@ -167,9 +168,11 @@ def _joints(model: Model, at: States, kind: str, asked: Asked) -> Values:
     """Return the results of the scene's joints, without those that hold the axes of slides, and with friction."""
     found = {joint.name: joint_state(joint, at.outputs(kind, k)) for k, joint in enumerate(model.joints)
              if joint.is_of_scene and asked(joint.name)}
-    for k, friction in enumerate(model.of(JointFrictionModel)):
+    numbers: Counter[str] = Counter()
+    for friction in model.of(JointFrictionModel, JointStickingModel):
+        numbers[friction.type] += 1
         if (of := found.get(friction.name)) is not None:
-            by = joint_state(friction.of, at.outputs(friction.type, k))
+            by = joint_state(friction.of, at.outputs(friction.type, numbers[friction.type] - 1))
             of |= {name: of[name] + by[name] for name in ("force", "moment")}
     return found
 
@@ -290,7 +293,7 @@ def _none(model: Model, at: States, kind: str, asked: Asked) -> Values:
     return {}
 
 
-RESULTS = {"slide": _slides, "anchor": _ropes, "joint": _joints, "joint_friction": _none,
+RESULTS = {"slide": _slides, "anchor": _ropes, "joint": _joints, "joint_friction": _none, "joint_sticking": _none,
            "point_force": _point_forces, "drag": _drags, "ice": _ices, "branch": _branches,
            "working_curve": _working_curves, "contact": _contacts,
            "rope contact": _rope_contacts, "hard_contact": _hard_contacts,

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..engine import Engine
 from ..errors import SceneError
-from .joints import JointFrictionModel, JointModel
+from .joints import JointFrictionModel, JointModel, JointStickingModel
 from .model import Model
 
 REDUNDANT, NEARLY_REDUNDANT = 1e-12, 1e-8
@@ -32,6 +32,7 @@ def drop_redundant_rows(model: Model, engine: Engine) -> list[str]:
 
     Raises SceneError where slides or driven joints constrain the same motion, and for a start in a singular position.
     """
+    _check_sticking(model)
     rows = _in_loops(model, two_riders=False)
     if not len(rows) or not engine.prepare():
         return []  # start reports a failure
@@ -58,10 +59,36 @@ def drop_redundant_rows(model: Model, engine: Engine) -> list[str]:
 def _check_friction(model: Model, follows: dict[int, list[int]], owner: list[str]) -> None:
     """Raise SceneError for friction by the force of a joint that others share, so that it is not determined."""
     shared = {owner[k] for row, others in follows.items() if _has_force(model, row) for k in (row, *others)}
-    for friction in model.of(JointFrictionModel):
+    for friction in model.of(JointFrictionModel, JointStickingModel):
         if friction.needs_reactions and (name := f'joint "{friction.name}"') in shared:
             raise SceneError(name, "has friction by its force, which other joints share in a way that rigid bodies do "
                              "not determine", "give its normal_force, or leave out what over-constrains the scene")
+
+
+def _check_sticking(model: Model) -> None:
+    """Raise SceneError for friction of a joint that sticks in a loop of rigid bodies that something else holds, too."""
+    sticking = model.of(JointStickingModel)
+    if not sticking:
+        return
+    ends, n = [(joint, joint.attachments) for joint in model.joints], len(model.bodies) + 1
+    edges = []
+    for _, pair in ends:
+        nodes = []
+        for end in pair:
+            nodes.append(n if end.cable >= 0 else end.body + 1)
+            n += end.cable >= 0  # cables deform between their joints
+        edges.append((nodes[0], nodes[1]))
+    riders = [(0, slide.rider.body + 1) for slide in model.slides if slide.rider.cable < 0]
+    in_loop = [not only for only in bridges(n, [*edges, *riders])]
+    looped = {id(joint) for (joint, _), loops in zip(ends, in_loop, strict=False) if loops}
+    held = [f'joint "{friction.name}"' for friction in sticking if id(friction.of) in looped]
+    drives = [f'joint "{joint.name}"' for joint in model.joints if id(joint) in looped and joint.is_driven]
+    drives += [f'slide "{slide.name}"' for slide, loops in zip(
+        [each for each in model.slides if each.rider.cable < 0], in_loop[len(edges):], strict=True) if loops]
+    if held and len(held) + len(drives) > 1:
+        raise SceneError(held[0], f"has friction that sticks in a loop with {_listed([*held[1:], *drives])}: rigid "
+                         "bodies do not determine what each of them holds at rest",
+                         'take model="regularised" for all but one of them')
 
 
 def _has_force(model: Model, multiplier: int) -> bool:

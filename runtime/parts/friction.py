@@ -14,13 +14,13 @@ from .validation import Name, not_negative, one_of, positive, show, shown
 class Friction(Part):
     """Friction of a slide, joint, contact, crossing or rope on a sheave, from normal force N and speed of sliding.
 
-    A number in its place is the coefficient. Slides and ropes find the instants at which they stick and break loose as
-    events. In contacts and crossings a spring holds sticking points, and slides where its force exceeds friction.
-    Friction of a driven slide acts against the drive, is part of the slide's traction, and is zero while the drive
-    stands.
+    A number in its place is the coefficient. Slides, joints and ropes find the instants at which they stick and break
+    loose as events. In contacts and crossings a spring holds sticking points, and slides where its force exceeds
+    friction. Friction of a driven slide acts against the drive, is part of the slide's traction, and is zero while the
+    drive stands.
 
     coefficient: of sliding, Coulomb's
-    static_coefficient: of sticking, of slides alone; by default that of sliding
+    static_coefficient: of sticking, of slides and joints; by default that of sliding
     viscous: of slides and joints, N s/m
     rolling: coefficient of rolling resistance, of slides alone, a force of rolling N against the motion (for wheels:
         the arm of the resistance over the radius)
@@ -76,12 +76,14 @@ class Friction(Part):
         """Return the coefficient of sticking."""
         return self.coefficient if self.static_coefficient is None else self.static_coefficient
 
-    def check_regularised(self) -> None:
-        """Raise ValueError unless it is regularised friction of sliding, the friction of joints."""
-        for name, given in (('model="stick"', self.sticks), ("rolling", self.rolling > 0),
-                            ("static_coefficient", self.static != self.coefficient)):
+    def check_of_joint(self) -> None:
+        """Raise ValueError unless it is friction that joints have."""
+        for name, given in (("rolling", self.rolling > 0),
+                            ("static_coefficient", self.static != self.coefficient and not self.sticks)):
             if given:
-                raise ValueError(f"friction has {name}, which joints have not", f"leave {name} out")
+                remedy = f"leave {name} out" + ', or take model="stick"' * (name == "static_coefficient")
+                raise ValueError(f"friction has {name}, which joints have not"
+                                 + " without sticking" * (name == "static_coefficient"), remedy)
 
     def check_coulomb(self) -> None:
         """Raise ValueError unless it is Coulomb friction, the friction of contacts and crossings."""
@@ -93,7 +95,7 @@ class Friction(Part):
                 raise ValueError(f"has {name} friction, which only slides {'and joints ' * (name == 'viscous')}have",
                                  f"leave {name} out")
         if self.static != self.coefficient:
-            raise ValueError("has a static_coefficient, which only slides have",
+            raise ValueError("has a static_coefficient, which only slides and joints have",
                              "leave static_coefficient out")
 
 

@@ -55,8 +55,8 @@ class Joint(Part):
         distance, m
     velocity: rate of the angle or the distance, rad/s or m/s
     length: of a distance joint, m; by default the distance at the start
-    friction: of a revolute, prismatic or cylindrical joint, not on ropes, regularised; the joint's force across the
-        axis presses, not its moment
+    friction: of a revolute, prismatic or cylindrical joint, not on ropes; with the model "stick", of the former two, it
+        holds at rest. The joint's force across the axis presses, not its moment
     radius: of the pin, for friction of revolute and cylindrical joints, m
     normal_force: presses in the place of the joint's force, as in a brake, N
     """
@@ -126,7 +126,11 @@ class Joint(Part):
             raise ValueError(f"friction of a {self.joint_kind} joint needs the radius of its pin" if needs_radius else
                              "radius is given, but a prismatic joint has no pin", *() if needs_radius else
                              ("leave it out",))
-        self.friction.check_regularised()
+        self.friction.check_of_joint()
+        if self.friction.sticks and self.joint_kind == "cylindrical":
+            raise ValueError('friction has model="stick", but a cylindrical joint is free in two motions, in which it '
+                             "does not come to rest by itself", 'take model="regularised", or a revolute and a '
+                             "prismatic joint in its place")
         return self
 
     @model_validator(mode="after")

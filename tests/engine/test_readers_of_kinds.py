@@ -59,8 +59,7 @@ PLACES = {
 SCENE_PLACES = {
     "friction": [
         "choice/indicators.py", "results/rope_tensions.py", "solve/modes/modes.py", "solve/motion/integrator_choice.py",
-        "solve/notes/uncontrolled_errors.py", "solve/statics/relaxation.py", "solve/statics/static.py",
-        "solve/statics/sticking_ropes.py"],
+        "solve/notes/uncontrolled_errors.py", "solve/statics/static.py", "solve/statics/sticking_ropes.py"],
     "points that move along a cable: slides and crossings": [
         "choice/chooser.py", "choice/probes.py", "results/animation/curves.py", "results/animation/references.py",
         "results/animation/sources.py", "results/charts.py", "results/section_forces/forces.py",

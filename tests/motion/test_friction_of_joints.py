@@ -180,8 +180,11 @@ def test_runs_resume_and_files_hold_friction(integrator, tmp_path):
     ("prismatic", {"friction": 0.1, "radius": 0.1, "axis": (1, 0, 0)}, "a prismatic joint has no pin; leave it out"),
     ("revolute", {"friction": 0.1, "radius": 0.1, "velocity": fu.Ramp(start=0, end=1)},
      "friction is given, but a signal drives the joint"),
-    ("revolute", {"friction": fu.Friction(coefficient=0.1, model="stick"), "radius": 0.1},
-     'friction has model="stick", which joints have not'),
+    ("cylindrical", {"friction": fu.Friction(coefficient=0.1, model="stick"), "radius": 0.1},
+     'friction has model="stick", but a cylindrical joint is free in two motions'),
+    ("revolute", {"friction": fu.Friction(coefficient=0.1, static_coefficient=0.2), "radius": 0.1},
+     'friction has static_coefficient, which joints have not without sticking; '
+     'leave static_coefficient out, or take model="stick"'),
     ("revolute", {"friction": fu.Friction(rolling=0.1), "radius": 0.1}, "friction has rolling, which joints have not"),
     ("revolute", {"friction": 0.1, "radius": 0.1, "normal_force": -1}, "normal_force must be positive"),
 ])

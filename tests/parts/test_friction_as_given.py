@@ -88,7 +88,7 @@ def test_what_is_none_is_refused(friction, message):
 @pytest.mark.parametrize(("friction", "message"), [
     ({"coefficient": 0.1, "viscous": 1.0}, "has viscous friction"),
     ({"rolling": 0.1}, "has rolling friction"),
-    ({"coefficient": 0.1, "static_coefficient": 0.2}, "has a static_coefficient, which only slides have"),
+    ({"coefficient": 0.1, "static_coefficient": 0.2}, "has a static_coefficient, which only slides and joints have"),
 ])
 def test_what_is_of_slides_alone(friction, message):
     fu.Slide(body="a", along="b", s=1.0, friction=friction)

@@ -32,7 +32,7 @@ int fu_couplings_can_act(const fu_model *model)
 void fu_update_directions(fu_run *run)
 {
     FU_EACH_COUPLING(c, run->model->couplings, run->model->n_couplings)
-        if (c->events && c->events->path) c->events->path->update_direction(run, c);
+        if (c->events && c->events->update_direction) c->events->update_direction(run, c);
 }
 
 /* Determines the state of couplings at the start; returns a status. */

@@ -10,6 +10,7 @@
 #include "equations/run.h"
 #include "events/end_stops.h"
 #include "events/events.h"
+#include "events/sticking.h"
 
 #include <math.h>
 #include <string.h>
@@ -66,17 +67,6 @@ static double excess(const fu_run *run, const fu_state *state, int j, double *pu
     return (is_hard(model, j, side) ? side * along : fabs(along)) - most;
 }
 
-/* Returns a number that is negative while a slide stays locked, or slides in its direction. */
-double fu_stick_margin(const fu_run *run, const fu_state *state, int j)
-{
-    const fu_slide *slide = &run->model->slides[j];
-    double pull;
-    const fu_slide_flags *flags = fu_slide_flags_of(run->model, state, j);
-    if (flags->mode == FU_LEFT || slide->drive >= 0) return -1.0;
-    if (flags->mode == FU_LOCKED) return excess(run, state, j, &pull);
-    return slide->sticks ? -flags->slip_direction * fu_slide_rate(run->model, state, j) : -1.0;
-}
-
 /* Returns a number that is positive while a slide compresses a buffer. */
 double fu_buffer_margin(const fu_run *run, const fu_state *state, int j, int side)
 {
@@ -97,18 +87,41 @@ static void release(fu_run *run, int j, double pull)
     if (hard) flags->contact = 0;
 }
 
-/* Locks a slide at rest if friction or its stop can carry the force on it, else lets it slide; returns a status. */
-static int try_to_stick(fu_run *run, int j)
+static fu_sticking_flags *flags_of(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
-    fu_state *now = &run->now;
-    double pull;
-    fu_slide_flags_of(run->model, now, j)->mode = FU_LOCKED;
-    fu_slide_numbers_of(run->model, now, j)->locked_s = now->s[j];
-    if (fu_project_velocities(run->model, now, &run->accelerator, run->work)) return FU_SINGULAR;
-    fu_impact(run, run->work, 0.0);
-    if (fu_complete(run, now)) return FU_SINGULAR;
-    if (excess(run, now, j, &pull) > 0.0) release(run, j, pull);
-    return FU_RUNNING;
+    return (fu_sticking_flags *)fu_slide_flags_of(model, state, coupling->index);
+}
+
+static double rate_of(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    return fu_slide_rate(model, state, coupling->index);
+}
+
+static void lock(fu_run *run, const fu_coupling *coupling)
+{
+    const int j = coupling->index;
+    fu_slide_numbers_of(run->model, &run->now, j)->locked_s = run->now.s[j];
+}
+
+static double excess_of(const fu_run *run, const fu_coupling *coupling, const fu_state *state, double *pull)
+{
+    return excess(run, state, coupling->index, pull);
+}
+
+static void release_of(fu_run *run, const fu_coupling *coupling, double pull)
+{
+    release(run, coupling->index, pull);
+}
+
+static const fu_sticking sticking = {flags_of, rate_of, lock, excess_of, release_of};
+
+/* Returns a number that is negative while a slide stays locked, or slides in its direction. */
+double fu_stick_margin(const fu_run *run, const fu_state *state, int j)
+{
+    const fu_slide *slide = &run->model->slides[j];
+    const int mode = fu_slide_flags_of(run->model, state, j)->mode;
+    if (mode == FU_LEFT || slide->drive >= 0 || (mode == FU_SLIDES && !slide->sticks)) return -1.0;
+    return fu_sticking_margin(run, &slide->base, state, &sticking);
 }
 
 /* Returns whether a slide is at rest. */
@@ -121,11 +134,7 @@ static int is_at_rest(const fu_run *run, int j)
 /* Sets the direction of sliding of a slide whose friction needs it. */
 void fu_find_slip_direction(fu_run *run, const fu_coupling *coupling)
 {
-    const int j = coupling->index;
-    const double rate = fu_slide_rate(run->model, &run->now, j);
-    fu_slide_flags *flags = fu_slide_flags_of(run->model, &run->now, j);
-    if (run->model->slides[j].sticks && flags->mode == FU_SLIDES && rate != 0.0)
-        flags->slip_direction = rate > 0.0 ? 1 : -1;
+    if (run->model->slides[coupling->index].sticks) fu_set_slip_direction(run, coupling, &sticking);
 }
 
 /* Determines the buffer of a slide at the start, and whether it sticks; returns a status. */
@@ -138,7 +147,7 @@ int fu_begin_stops(fu_run *run, const fu_coupling *coupling)
         if (model->slides[j].stops[side > 0].kind == FU_END_IS_BUFFERED &&
             fu_buffer_margin(run, &run->now, j, side) > 0.0)
             fu_slide_flags_of(run->model, &run->now, j)->contact = side;
-    return model->slides[j].sticks && is_at_rest(run, j) ? try_to_stick(run, j) : FU_RUNNING;
+    return model->slides[j].sticks && is_at_rest(run, j) ? fu_try_to_stick(run, coupling, &sticking) : FU_RUNNING;
 }
 
 /* Executes the impact of a slide on its hard stop, where it stays after a negligible rebound; returns a status. */
@@ -166,7 +175,7 @@ static int strike(fu_run *run, int j, int side)
     const double back = -side * slide.s_rate, push = side * slide.s_acceleration;
     if (is_at_rest(run, j) || back * back <= 2.0 * push * MIN_REBOUND * fu_length(model, now, j)) {
         flags->contact = side;
-        if (try_to_stick(run, j)) return FU_SINGULAR;
+        if (fu_try_to_stick(run, &model->slides[j].base, &sticking)) return FU_SINGULAR;
     }
     fu_update_directions(run);
     return FU_RUNNING;
@@ -228,7 +237,5 @@ int fu_release_or_stick(fu_run *run, const fu_coupling *coupling, const char **w
         return FU_RUNNING;
     }
     if (flags->mode != FU_SLIDES || !run->model->slides[j].sticks) return FU_RUNNING;
-    const int status = try_to_stick(run, j);
-    *what = flags->mode == FU_LOCKED ? "stuck" : "turned round";
-    return status;
+    return fu_stick_or_turn(run, coupling, &sticking, what);
 }

@@ -10,6 +10,7 @@
     WITH_EVENTS(slide)                                                                                                 \
     ALONE(joint)                                                                                                       \
     ALONE(joint_friction)                                                                                              \
+    WITH_EVENTS(joint_sticking)                                                                                        \
     ALONE(anchor)                                                                                                      \
     WITH_EVENTS(span)                                                                                                  \
     WITH_EVENTS(sheave)                                                                                                \

@@ -123,12 +123,8 @@ static int act(fu_run *run, const fu_coupling *coupling, int which, int side, co
     return FU_RUNNING;
 }
 
-static const fu_path_operations path = {.at = path_at,
-                                        .rate = rate,
-                                        .stops_at_boundaries = stops_at_boundaries,
-                                        .enter = enter,
-                                        .reach_end = fu_reach_end,
-                                        .update_direction = fu_find_slip_direction};
+static const fu_path_operations path = {
+    .at = path_at, .rate = rate, .stops_at_boundaries = stops_at_boundaries, .enter = enter, .reach_end = fu_reach_end};
 
 const fu_coupling_events fu_slide_events = {
     .functions = functions,
@@ -136,6 +132,7 @@ const fu_coupling_events fu_slide_events = {
     .grazing = grazing,
     .sign = sign,
     .act = act,
+    .update_direction = fu_find_slip_direction,
     .can_act = can_act,
     .begin = fu_begin_stops,
     .path = &path,

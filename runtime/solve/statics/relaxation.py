@@ -222,7 +222,7 @@ class _Search(Generic[S]):
         self.motion = _Motion(scene, self.problem)
         if self.problem.turns.fraction < 1.0:
             self._turn()
-        self.sticking = [f'"{name}"' for name, slide in scene.slides.items() if slide.friction is not None]
+        self.sticking = [f'"{part.given_name}"' for part in scene.rubbing if part.friction and part.friction.sliding]
         self.last: _Place | None = None
         self.near, self.pushes, self.force = NEWTON_RESIDUAL, 0, np.zeros(0)
         self.branch: dict[str, np.ndarray] | None = None

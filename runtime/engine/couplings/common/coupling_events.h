@@ -30,8 +30,6 @@ typedef struct {
     /* Handles a coupling that leaves its path at an end: at the last segment for side 1, at the first for -1. Returns a
      * status; *what describes the event in words. */
     int (*reach_end)(fu_run *run, const fu_coupling *coupling, int side, const char **what);
-    /* Updates the direction of motion along the path after a jump of velocities. */
-    void (*update_direction)(fu_run *run, const fu_coupling *coupling);
 } fu_path_operations;
 
 /* Deferred events: changes within a step, at which only a slope of the force is discontinuous. */
@@ -85,6 +83,8 @@ struct fu_coupling_events {
     /* Executes the action of an event function that has passed zero to this side; returns a status. *what describes the
      * change in words, is empty for one that is not reported, and null if there is none. */
     int (*act)(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what);
+    /* Updates the direction of motion after a jump of velocities. Null: none. */
+    void (*update_direction)(fu_run *run, const fu_coupling *coupling);
     /* Whether velocities are continuous there: a method that conserves energy does not project them. */
     int keeps_velocities;
 

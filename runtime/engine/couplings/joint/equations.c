@@ -58,7 +58,10 @@ static void look(const fu_model *model, const fu_joint *joint, const fu_state *s
     const int is_turned = view->c[0] != 0.0; /* most joints have no angle */
     view->c[1] = is_turned ? cos(view->c[0]) : 1.0;
     view->c[2] = is_turned ? sin(view->c[0]) : 0.0;
-    if (joint->is_free) find_angle(dim, view);
+    if (!joint->is_free) return;
+    const double *locked = fu_joint_locked(joint, state);
+    if (locked) memcpy(view->c, locked, sizeof view->c);
+    else find_angle(dim, view);
 }
 
 /* Adds a value times a row of n numbers to another. */
@@ -117,6 +120,20 @@ void fu_joint_equations(const fu_model *model, const fu_joint *joint, const fu_s
         take_coordinates(&view, e, &out->n[e], out->at[e]);
         over_coordinates(model->dim, &view, e, joint->kernel->rows, by_moves, out->J[e]);
     }
+}
+
+/* Computes c of a free motion at a state: the displacement, and the cosine and the sine of the angle. */
+void fu_joint_free_place(const fu_model *model, const fu_joint *joint, const fu_state *state, double c[3])
+{
+    double by_moves[6 * MAX_MOVES], K[MAX_MOVES * MAX_MOVES], phi[6];
+    joint_view view;
+    look(model, joint, state, 0, &view);
+    find_angle(model->dim, &view);
+    view.c[0] = 0.0;
+    joint->kernel->force(view.gap, view.A[0], view.A[1], view.c, state->forces + joint->base.force, phi, by_moves, K);
+    c[0] = phi[0]; /* of an angle that is its own: zero */
+    c[1] = view.c[1];
+    c[2] = view.c[2];
 }
 
 /* Returns whether a joint is between two cables. */
@@ -246,7 +263,7 @@ void fu_joint_rows(const fu_model *model, const fu_coupling *coupling, const fu_
     double by_moves[6 * MAX_MOVES], K[MAX_MOVES * MAX_MOVES], J[2][6 * FU_ATTACHMENT_COORDINATES], s_rate[2],
         gap_rate[3];
     joint_view view;
-    if (fu_joint_is_inactive(model, joint, state)) {
+    if (fu_joint_is_inactive(model, joint, state) || (joint->is_free && !fu_joint_locked(joint, state))) {
         rows->n = rows->rows = 0;
         return;
     }

@@ -1,8 +1,9 @@
 /* Friction of a joint against the motions that it leaves free, as a coupling: forces with the rows of the Jacobian of
  * these motions, from rows' rates by the velocities. Over a speed of sliding u, rates times arms, it is
  *     (coefficient N / sqrt(u.u + v0^2) + viscous) u,
- * N the part across the axis of the joint's force, or the given normal force. In a Newton system the forces are
- * internal unknowns. */
+ * N the part across the axis of the joint's force, or the given normal force; with the sign of u in the place of the
+ * smooth one for friction that sticks, whose motion is locked at rest by a constraint. In a Newton system the forces
+ * are internal unknowns. */
 #include "bodies/unknowns.h"
 #include "couplings/common/accelerator.h"
 #include "couplings/common/couplings.h"
@@ -24,6 +25,19 @@ typedef struct {
 static const fu_joint_friction *of(const fu_coupling *coupling)
 {
     return (const fu_joint_friction *)coupling;
+}
+
+/* Returns the direction opposed by friction, 0 for friction that rises smoothly with the speed. */
+static int direction_of(const fu_model *model, const fu_joint_friction *friction, const fu_state *state)
+{
+    const fu_coupling *coupling = &friction->free.base;
+    return coupling->type == &fu_joint_sticking_type ? fu_joint_sticking_flags(model, coupling, state)->slip_direction
+                                                     : 0;
+}
+
+static int is_locked(const fu_coupling *coupling, const fu_state *state)
+{
+    return fu_joint_locked(&of(coupling)->free, state) != 0;
 }
 
 /* Returns the joint whose force presses; null for a given normal force. */
@@ -75,6 +89,15 @@ static void find_law(const fu_model *model, const fu_joint_friction *friction, c
     for (int r = 0; r < rows; ++r)
         for (int e = 0; e < 2; ++e)
             for (int i = 0; i < at->n[e]; ++i) u[r] += arms[r] * at->J[e][r * at->n[e] + i] * state->v[at->at[e][i]];
+    const int direction = direction_of(model, friction, state);
+    if (direction) {
+        const double limit = scale * friction->coefficient * direction, viscous = scale * friction->viscous;
+        law->force[0] = arms[0] * (limit * N + viscous * u[0]);
+        law->by_normal[0] = arms[0] * limit;
+        law->by_rate[0][0] = arms[0] * arms[0] * viscous;
+        law->power = (limit * N + viscous * u[0]) * u[0];
+        return;
+    }
     const double square = fu_dot(rows, u, u), size = sqrt(square + friction->velocity * friction->velocity);
     const double slope = scale * friction->coefficient / size, drag = slope * N + scale * friction->viscous;
     for (int r = 0; r < rows; ++r) {
@@ -84,6 +107,12 @@ static void find_law(const fu_model *model, const fu_joint_friction *friction, c
             law->by_rate[r][k] = arms[r] * arms[k] * ((r == k) * drag - slope * N * u[r] * u[k] / (size * size));
     }
     law->power = drag * square;
+}
+
+/* Sets the law of locked friction: the force of its constraint, without power. */
+static void hold(const fu_coupling *coupling, const fu_state *state, const double *lambda, friction_law *law)
+{
+    *law = (friction_law){.force = {lambda ? lambda[coupling->multiplier] : state->forces[coupling->force]}};
 }
 
 /* Computes the free motions and the law at a state, by these multipliers of all couplings with constraints. */
@@ -96,7 +125,8 @@ static void look(const fu_model *model, const fu_coupling *coupling, const fu_st
                                 : lambda ? lambda + joint->base.multiplier
                                          : state->forces + joint->base.force;
     fu_joint_equations(model, &friction->free, state, at);
-    find_law(model, friction, state, at, normal_force(model, friction, state, multipliers, 0), law);
+    if (is_locked(coupling, state)) hold(coupling, state, lambda, law);
+    else find_law(model, friction, state, at, normal_force(model, friction, state, multipliers, 0), law);
 }
 
 /* Adds the generalised forces of rows, times a factor. */
@@ -118,7 +148,9 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
     look(model, coupling, next, 0, &at, &law);
     add_forces(of(coupling), &at, force, 1.0, f);
     for (int r = 0; r < coupling->n_forces; ++r)
-        internal[coupling->unknown + r] = -equations->weights.stiffness * (force[r] - law.force[r]);
+        internal[coupling->unknown + r] = is_locked(coupling, next)
+                                              ? -fu_row_unit(equations->weights.inertia, coupling->scale[r]) * at.phi[r]
+                                              : -equations->weights.stiffness * (force[r] - law.force[r]);
 }
 
 /* Adds the derivatives of the law by the velocities, whose rows J (rows x n, over the coordinates) belong to an
@@ -159,7 +191,8 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     fu_joint_derivatives by;
     fu_joint_rows_at at;
     fu_joint_equations(model, joint, equations->next, &at);
-    add_law(model, coupling, equations, &at, system);
+    const int locked = is_locked(coupling, equations->next);
+    if (!locked) add_law(model, coupling, equations, &at, system);
     fu_joint_tangent(model, joint, equations->next, equations->next->forces + coupling->force, &by);
     int internal[MAX_ROWS];
     for (int r = 0; r < rows; ++r) internal[r] = fu_extra(model, coupling->unknown) + r;
@@ -173,6 +206,9 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
                 scaled[r * n + i] = fu_row_unit(w.inertia, coupling->scale[r]) * at.J[e][r * n + i];
         fu_add_block(model, system, columns, (fu_side){rows, internal, 1}, 1.0, scaled, 1, n);
         fu_turn_attachment(model, &joint->attachments[e], equations->psi, by.J[e], rows + by.n[0] + by.n[1], n, 0);
+        for (int i = 0; i < rows * n && locked; ++i)
+            scaled[i] = fu_row_unit(w.inertia, coupling->scale[i / n]) * by.J[e][i];
+        if (locked) fu_add_block(model, system, (fu_side){rows, internal, 1}, columns, 1.0, scaled, n, 1);
         fu_add_block(model, system, columns, columns, w.stiffness, by.K[e][e], n, 1);
         /* terms between two cables would widen the band: Newton converges without them */
         if (by.across && !fu_between_cables(joint))
@@ -185,7 +221,7 @@ static void add_force(const fu_model *model, const fu_coupling *coupling, const 
 {
     fu_joint_rows_at at;
     friction_law law;
-    if (coupling->needs_reactions) return;
+    if (coupling->needs_reactions || is_locked(coupling, state)) return;
     look(model, coupling, state, 0, &at, &law);
     add_forces(of(coupling), &at, law.force, 1.0, f);
 }
@@ -196,7 +232,7 @@ static double update(const fu_model *model, const fu_coupling *coupling, const f
     fu_joint_rows_at at;
     friction_law law;
     double *known = work->scratch + coupling->scratch, change[MAX_ROWS], largest = 0.0, size = 0.0;
-    if (!coupling->needs_reactions) return 0.0;
+    if (!coupling->needs_reactions || is_locked(coupling, state)) return 0.0;
     look(model, coupling, state, lambda, &at, &law);
     for (int r = 0; r < coupling->n_forces; ++r) {
         change[r] = law.force[r] - (lambda ? known[r] : 0.0);
@@ -214,7 +250,7 @@ static void accept(const fu_model *model, const fu_coupling *coupling, const fu_
 {
     fu_joint_rows_at at;
     friction_law law;
-    if (!coupling->needs_reactions) return;
+    if (!coupling->needs_reactions || is_locked(coupling, state)) return;
     look(model, coupling, state, lambda, &at, &law);
     add_forces(of(coupling), &at, law.force, 1.0, work->force);
 }
@@ -244,7 +280,48 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     friction_law law;
     (void)acceleration;
     look(model, coupling, state, work ? work->multipliers : 0, &at, &law);
+    if (!work && coupling->n_multipliers) hold(coupling, state, 0, &law); /* the force that a search for rest found */
     fu_joint_outputs(model, &of(coupling)->free, state, law.force, (fu_joint_output *)out);
+}
+
+/* --- friction that sticks ---------------------------------------------------------------------------------------- */
+
+void fu_joint_lock(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+{
+    double c[3];
+    fu_joint_free_place(model, &of(coupling)->free, state, c);
+    memcpy(fu_joint_sticking_numbers_of(coupling, state)->locked, c, sizeof c);
+}
+
+double fu_joint_free_rate(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    fu_joint_rows_at at;
+    double rate = 0.0;
+    fu_joint_equations(model, &of(coupling)->free, state, &at);
+    for (int e = 0; e < 2; ++e)
+        for (int i = 0; i < at.n[e]; ++i) rate += at.J[e][i] * state->v[at.at[e][i]];
+    return rate;
+}
+
+double fu_joint_excess(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
+                       double *pull)
+{
+    const fu_joint_friction *friction = of(coupling);
+    const fu_joint *joint = pressed_by(model, friction);
+    const double *multipliers = !joint   ? 0
+                                : lambda ? lambda + joint->base.multiplier
+                                         : state->forces + joint->base.force;
+    const double scale = fu_scale_at(model, friction->scale, state->t);
+    *pull = lambda ? lambda[coupling->multiplier] : state->forces[coupling->force];
+    return fabs(*pull) / friction->arms[0] -
+           scale * friction->static_coefficient * normal_force(model, friction, state, multipliers, 0);
+}
+
+static int is_possible(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    const fu_sticking_flags *flags = fu_joint_sticking_flags(model, coupling, state);
+    return (flags->mode == FU_SLIDES || flags->mode == FU_LOCKED) && flags->slip_direction >= -1 &&
+           flags->slip_direction <= 1;
 }
 
 static const char *const role[] = {"joint", 0};
@@ -257,6 +334,7 @@ static const fu_field fields[] = {
     FU_FIELD(fu_joint_friction, normal_force, FU_REAL, 0),
     FU_FIELD_ARRAY(fu_joint_friction, arms, FU_REAL),
     FU_FIELD(fu_joint_friction, coefficient, FU_REAL, 0),
+    FU_FIELD(fu_joint_friction, static_coefficient, FU_REAL, 0),
     FU_FIELD(fu_joint_friction, viscous, FU_REAL, 0),
     FU_FIELD(fu_joint_friction, velocity, FU_REAL, 0),
     FU_FIELD_AS("friction_scale", fu_joint_friction, scale, FU_INTEGER),
@@ -272,17 +350,25 @@ static const fu_output output_fields[] = {
 
 static const fu_reaction_operations reaction = {.update = update, .accept = accept};
 
-const fu_coupling_type fu_joint_friction_type = {
-    .name = "joint_friction",
-    .size = sizeof(fu_joint_friction),
-    .fields = fields,
-    .output_fields = output_fields,
-    .n_scratch = MAX_ROWS,
-    .residual = residual,
-    .tangent = tangent,
-    .force = add_force,
-    .take_forces = take_forces,
-    .outputs = outputs,
-    .dissipation = dissipation,
-    .reaction = &reaction,
-};
+static const fu_start_operations start = {.is_possible = is_possible};
+
+#define TYPE(kind, ...)                                                                                                \
+    {.name = kind,                                                                                                     \
+     .size = sizeof(fu_joint_friction),                                                                                \
+     .fields = fields,                                                                                                 \
+     .output_fields = output_fields,                                                                                   \
+     .n_scratch = MAX_ROWS,                                                                                            \
+     .residual = residual,                                                                                             \
+     .tangent = tangent,                                                                                               \
+     .force = add_force,                                                                                               \
+     .take_forces = take_forces,                                                                                       \
+     .outputs = outputs,                                                                                               \
+     .dissipation = dissipation,                                                                                       \
+     .reaction = &reaction,                                                                                            \
+     __VA_ARGS__}
+
+const fu_coupling_type fu_joint_friction_type = TYPE("joint_friction", .start = 0);
+const fu_coupling_type fu_joint_sticking_type =
+    TYPE("joint_sticking", .start = &start, .rows = fu_joint_rows,
+         .n_numbers = (int)(sizeof(fu_joint_sticking_numbers) / sizeof(double)),
+         .n_flags = (int)(sizeof(fu_sticking_flags) / sizeof(int)));

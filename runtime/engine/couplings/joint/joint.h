@@ -5,6 +5,7 @@
 
 #include "couplings/common/attachments.h"
 #include "couplings/common/coupling.h"
+#include "couplings/common/sticking.h"
 
 /* A joint between two attachments; the drive sets c = distance or angle to its base + its signal. */
 typedef struct {
@@ -26,10 +27,15 @@ typedef struct {
     fu_joint free; /* the free motions as equations; as many internal forces, of friction */
     int pressed_by;
     double normal_force, arms[2];
-    double coefficient, viscous, velocity; /* 1, N s/m, m/s */
-    int scale;                             /* signal of a factor of both, -1 */
+    double coefficient, static_coefficient, viscous, velocity; /* sliding and at rest; N s/m; m/s */
+    int scale;                                                 /* signal of a factor of the former three, -1 */
 } fu_joint_friction;
-extern const fu_coupling_type fu_joint_friction_type;
+extern const fu_coupling_type fu_joint_friction_type, fu_joint_sticking_type;
+
+/* The part of a state of friction that sticks, of one free motion: c of its joint while it is locked, m or rad. */
+typedef struct {
+    double locked[3]; /* c, its cosine and sine */
+} fu_joint_sticking_numbers;
 
 /* The numbers of a joint, and of its friction, in a row of output. */
 typedef struct {
@@ -58,6 +64,17 @@ void fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_sta
                       fu_joint_derivatives *out);
 void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_state *state, const double *multipliers,
                       fu_joint_output *out);
+/* Friction that sticks, couplings/joint/state.c: its flags and numbers; c of its joint if it is locked, else null. */
+fu_sticking_flags *fu_joint_sticking_flags(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+fu_joint_sticking_numbers *fu_joint_sticking_numbers_of(const fu_coupling *coupling, const fu_state *state);
+const double *fu_joint_locked(const fu_joint *joint, const fu_state *state);
+/* Locks it at its place in a state; the rate of its motion; the force of its lock, `pull`, and the excess of that at
+ * the radius over what can hold it, N, by the multipliers of all couplings, null: by the forces of the state. */
+void fu_joint_lock(const fu_model *model, const fu_coupling *coupling, fu_state *state);
+double fu_joint_free_rate(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+double fu_joint_excess(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
+                       double *pull);
+void fu_joint_free_place(const fu_model *model, const fu_joint *joint, const fu_state *state, double c[3]);
 int fu_joint_moves(const fu_model *model, const fu_joint *joint, const fu_state *state, int at);
 int fu_between_cables(const fu_joint *joint);
 int fu_ties_a_frame(const fu_model *model, int which);

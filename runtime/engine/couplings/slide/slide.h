@@ -9,6 +9,7 @@
 #include "couplings/common/coupling.h"
 #include "couplings/common/coupling_events.h"
 #include "couplings/common/span_elements.h"
+#include "couplings/common/sticking.h"
 
 /* End stop at an end of a cable: the restitution of a hard stop; the length before the end, m, the stiffness, N/m, and
  * the damping, N s/m, of a buffer. */
@@ -22,10 +23,9 @@ extern const char *const fu_end_stop_kinds[]; /* their words: couplings/slide/st
 
 /* A slide's part of a state: its flags, and its numbers.
  *
- * mode: it slides; s is locked, by a signal or at rest; the rider has left the cable. slip_direction: 1 or -1 if
- * friction opposes that direction at any speed. contact: 1 or -1 in contact with the stop at the end or at the
- * start. locked_s: s of a locked slide, m. director: a unit vector normal to the tangent that follows the slide. */
-enum { FU_SLIDES, FU_LOCKED, FU_LEFT };
+ * mode, slip_direction: those of fu_sticking_flags, which they begin with; s is locked. contact: 1 or -1 in contact
+ * with the stop at the end or at the start. locked_s: s of a locked slide, m. director: a unit vector normal to the
+ * tangent that follows the slide. */
 typedef struct {
     int mode, slip_direction, contact;
 } fu_slide_flags;
