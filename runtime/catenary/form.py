@@ -11,6 +11,7 @@ import numpy as np
 from ..errors import SceneError, near
 from ..parts.signal import Ramp, Signal
 from ..parts.spring import Spring
+from ..parts.validation import items, shown
 from ..scene.scene import Scene
 from .building import Section, SpanForm, add_spans, along_contact, hold_ends, mesh, named, tie_messengers
 from .line import Line, by_span
@@ -58,13 +59,14 @@ class Form:
         return np.concatenate([span.tensions for span in self.spans[:len(self.line.formed)]])
 
 
-def form(line: Line, longest: tuple[float, float] = ELEMENT_LENGTHS) -> Form:
+def form(line: Line, longest: float | tuple[float, float] = ELEMENT_LENGTHS) -> Form:
     """Return the form of a line. Of equal, symmetric spans one is formed, which the others repeat.
 
     The contact wire has the line's sags at the droppers, and both wires have their tensions at an outer mast; the
     messenger turns freely on its supports. longest: length of the longest element of the contact wire, and of the
-    messenger, in m. Raises SceneError; EquilibriumError, where there is no such form.
+    messenger, in m, or of both. Raises SceneError; EquilibriumError, where there is no such form.
     """
+    longest = _of_both(longest)
     guess, contact_length = _guess(line, longest)
     scene = Scene(gravity=(0, -line.gravity, 0))
     heights = [line.ends[0].height or 0.0, *[0.0] * (len(guess) - 1), line.ends[1].height or 0.0]
@@ -105,6 +107,15 @@ def _targets(scene: Scene, line: Line, guess: Sequence[SpanForm], contact_length
         else:
             to[f"{names[0]}@0.force.x"] = -tension
     return adjust, to
+
+
+def _of_both(longest: float | tuple[float, float]) -> tuple[float, float]:
+    """Return the lengths of the longest elements of the contact wire and of the messenger. Raises SceneError."""
+    given = items([longest, longest] if isinstance(longest, int | float) else longest, 2, 2)
+    if given is None or not all(isinstance(each, int | float) and 0 < each < np.inf for each in given):
+        raise SceneError("form", f"longest must be one or two positive lengths in m, got {shown(longest)}",
+                         "give that of the contact wire and that of the messenger")
+    return float(given[0]), float(given[1])
 
 
 def _guess(line: Line, longest: tuple[float, float]) -> tuple[list[SpanForm], float]:
@@ -164,13 +175,14 @@ def _read_span(line: Line, k: int, longest: tuple[float, float], guess: SpanForm
                     1 / (1 / own + missing))
 
 
-def scene(lines: Line | Form | Sequence[Line | Form], longest: tuple[float, float] = ELEMENT_LENGTHS, *,
+def scene(lines: Line | Form | Sequence[Line | Form], longest: float | tuple[float, float] = ELEMENT_LENGTHS, *,
           overlaps: int | Sequence[int] = 1, temperature: float | Signal | None = None,
           broken: Mapping[str, float] | None = None) -> Scene:
     """Return the scene of a formed catenary, x along the track, y up from the contact wire at the outer droppers.
 
     lines: a line or its form, where it is known; or several, the sections of the catenary, each of which has its last
     spans beside the first ones of the next; overlaps: the number of these spans, or one for each pair of sections.
+    The wires are drawn straight: a run without a pantograph, whose settings say so, needs ``initial="equilibrium"``.
     longest: as in `form`. The contact wire is "contact", the messenger "messenger_1" from the first mast to the second,
     the droppers "dropper_1_1" and so on, supports and steady arms "support_1" and "arm_0" by their masts; in the second
     section "section_2_contact" and so on. temperature: above that of the form, in K, of the wires a number or a signal,

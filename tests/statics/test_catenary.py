@@ -90,6 +90,12 @@ def test_fine_elements_give_way_as_the_wire_does():
     assert mean_missing_compliance(20e3, 195.0, nodes[::20]) == pytest.approx(1.16e-6, rel=2e-2)
 
 
+def test_one_length_is_of_both_wires():
+    assert catenary.form(line55(), longest=3.0).longest == (3.0, 3.0)
+    with pytest.raises(fu.SceneError, match="longest must be one or two positive lengths in m, got "):
+        catenary.form(line55(), longest=(1.0, -1.0))
+
+
 def test_spans_repeat_the_one_that_was_formed():
     form = catenary.form(line55(spans=3), (1.5, 3.0))
     scene = catenary.scene(form)
