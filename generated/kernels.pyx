@@ -9,8 +9,8 @@ take longer to compile than the kernels.
 import inspect
 import json
 from functools import cache
-from importlib import resources
 from math import prod
+from pathlib import Path
 
 import numpy as np
 from funicular.generated import described
@@ -52,7 +52,7 @@ def __dir__():
 @cache
 def _manifest():
     """The manifest, and the family of each kernel: the description of all 700 kernels takes 8 ms."""
-    manifest = json.loads((resources.files("funicular.generated") / "manifest.json").read_text(encoding="utf-8"))
+    manifest = json.loads(Path(__file__).with_name("manifest.json").read_text(encoding="utf-8"))
     return manifest, {f"{family}_{suffix}": family for family, of in manifest["kernels"].items() for suffix in of}
 
 

@@ -14,6 +14,7 @@ from pydantic import BaseModel, ConfigDict, PlainValidator, ValidationError, mod
 
 from ..base.deferred import dataclass
 from ..errors import SceneError, near, shown_path
+from .plugins import no_plugins
 from .quantity import Quantity
 from .schemas import AXIS, DIRECTION, HOLDER, ORIENTATION, POINT, TABLE_OF, About, Check, Turning, checked
 from .validation import NAMES_A_PART, show, shown
@@ -239,6 +240,12 @@ class Part(BaseModel, metaclass=_TranslatingType):
                 across = ACROSS.get(turning.turns, slice(0))
                 vectors = value if isinstance(value[0], tuple) else (value,)
                 yield from (f"{name} {show(each, turning.unit)}" for each in vectors if any(each[across]))
+
+    @classmethod
+    def model_rebuild(cls, **options: Any) -> bool | None:
+        """Make the validator of the part, at its first use, without plugins of pydantic."""
+        with no_plugins():
+            return super().model_rebuild(**options)
 
     @model_validator(mode="before")
     @classmethod

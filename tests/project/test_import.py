@@ -33,7 +33,7 @@ def test_the_command_line_loads_none_either():
 @pytest.mark.parametrize("scene", ["paper51", "belt_drive", "block_and_tackle"])
 def test_a_run_loads_no_more_of_scipy_than_its_table_of_lapack(scene):
     """The rest of SciPy and numpy.random take longer to load than the first scene takes to run; small borders need no
-    LAPACK.
+    LAPACK, and parts no plugins of pydantic, the search for which loads importlib.metadata.
     """
     loaded = set(python("import sys, warnings, funicular; warnings.simplefilter('ignore'); "
                         f"funicular.load_scene('{scene}').run(duration=0.02, output_step=0.01, progress=False); "
@@ -41,7 +41,16 @@ def test_a_run_loads_no_more_of_scipy_than_its_table_of_lapack(scene):
     table = set() if scene == "paper51" else {"scipy.linalg.cython_lapack"}
     assert {name for name in loaded if re.match(r"scipy\.(?!_|version)\w+", name)} == table
     assert ("scipy" in loaded) == bool(table)
-    assert not loaded & (HEAVY - {"scipy"} | {"numpy.random", "numpy.testing"})
+    assert not loaded & (HEAVY - {"scipy"} | {"numpy.random", "numpy.testing", "importlib.metadata",
+                              "importlib.resources", "pydantic.plugin._loader"})
+
+
+def test_models_of_others_find_their_plugins_of_pydantic():
+    assert python("import funicular as fu; from pydantic import BaseModel, plugin\n"
+                  "fu.load_scene('paper51')\n"
+                  "from pydantic.plugin import _loader; print(_loader.__file__ is not None, _loader._plugins)\n"
+                  "type('Model', (BaseModel,), {}); print(_loader._plugins is not None)").split() == [
+                      "True", "None", "True"]
 
 
 def test_the_table_of_lapack_is_that_of_a_later_import():
