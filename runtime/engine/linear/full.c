@@ -15,11 +15,12 @@ static void copy(const fu_system *s, double *A)
         for (int i = first; i < end; ++i) A[j * size + i] = diagonal[i - j];
     }
     for (int i = 0; i < s->n_strips; ++i) {
-        const int k = n + s->strips[i].k, chain = s->strips[i].chain;
+        const int k = n + s->strips[i].k;
         const double *B = s->B + s->strips[i].at, *C = s->C + s->strips[i].at;
-        for (int j = s->chains[chain]; j < s->chains[chain + 1]; ++j) {
-            A[k * size + j] = B[j];
-            A[j * size + k] = C[j];
+        for (int half = FU_HALVES * i; half < FU_HALVES * (i + 1); ++half) {
+            const fu_span in_B = s->span_B[half], in_C = s->span_C[half];
+            for (int j = in_B.first; j < in_B.end; ++j) A[k * size + j] = B[j];
+            for (int j = in_C.first; j < in_C.end; ++j) A[j * size + k] = C[j];
         }
     }
     for (int j = 0; j < m; ++j)
