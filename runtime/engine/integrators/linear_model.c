@@ -1,5 +1,6 @@
 /* The linear model of motion about the start: matrices of cables, basis of the constraints, factors. */
 #include "integrators/linear_model.h"
+#include "base/simd.h"
 #include "equations/equations.h"
 
 #include <string.h>
@@ -52,17 +53,33 @@ void fu_linear_model_project(const fu_linear_model *linear, const double *force,
             y[rows->column[k]] += rows->value[k] * force[linear->mixed[i]];
 }
 
-void fu_linear_model_expand(const fu_linear_model *linear, int n_dof, const double *y, double *dofs)
+/* Computes `count` vectors over the dofs by the coordinates, which pass through their numbers once. */
+FU_INLINE void expand(const fu_linear_model *linear, int n_dof, int count, const double *const *y, double *const *dofs)
 {
     const fu_sparse *rows = &linear->combinations;
-    memset(dofs, 0, sizeof(double) * (size_t)n_dof);
-    for (int i = 0; i < linear->n; ++i)
-        if (linear->dof[i] >= 0) dofs[linear->dof[i]] = y[i];
-    for (int i = 0; i < rows->rows; ++i) {
-        double sum = 0.0;
-        for (int k = rows->start[i]; k < rows->start[i + 1]; ++k) sum += rows->value[k] * y[rows->column[k]];
-        dofs[linear->mixed[i]] = sum;
+    for (int m = 0; m < count; ++m) memset(dofs[m], 0, sizeof(double) * (size_t)n_dof);
+    for (int i = 0; i < linear->n; ++i) {
+        const int dof = linear->dof[i];
+        if (dof < 0) continue;
+        for (int m = 0; m < count; ++m) dofs[m][dof] = y[m][i];
     }
+    for (int i = 0; i < rows->rows; ++i)
+        for (int m = 0; m < count; ++m) {
+            double sum = 0.0;
+            for (int k = rows->start[i]; k < rows->start[i + 1]; ++k) sum += rows->value[k] * y[m][rows->column[k]];
+            dofs[m][linear->mixed[i]] = sum;
+        }
+}
+
+void fu_linear_model_expand(const fu_linear_model *linear, int n_dof, const double *y, double *dofs)
+{
+    expand(linear, n_dof, 1, &y, &dofs);
+}
+
+void fu_linear_model_expand_motion(const fu_linear_model *linear, int n_dof, const double *const y[FU_MATRICES],
+                                   double *const dofs[FU_MATRICES])
+{
+    expand(linear, n_dof, FU_MATRICES, y, dofs);
 }
 
 static void add_product(const fu_linear_model *linear, int n, int which, const double *x, double *y)

@@ -66,6 +66,9 @@ void fu_sparse_add_times(const fu_sparse *A, double factor, const double *x, dou
 void fu_linear_model_project(const fu_linear_model *linear, const double *force, double *y);
 /* Computes dofs = S y, of n_dof. */
 void fu_linear_model_expand(const fu_linear_model *linear, int n_dof, const double *y, double *dofs);
+/* The same for positions, rates and second derivatives together. */
+void fu_linear_model_expand_motion(const fu_linear_model *linear, int n_dof, const double *const y[FU_MATRICES],
+                                   double *const dofs[FU_MATRICES]);
 
 /* A small motion over the dofs, with `stride` numbers more, which are finite. */
 typedef struct {

@@ -111,9 +111,9 @@ int fu_linear_kinematics(fu_run *run, const fu_linear_space *w)
     const fu_model *model = run->model;
     fu_state *next = &run->next;
     const size_t size = sizeof(double) * (size_t)model->n_dof;
-    fu_linear_model_expand(run->linear, model->n_dof, w->next.y, w->motion.displacement);
-    fu_linear_model_expand(run->linear, model->n_dof, w->next.rate, next->v);
-    fu_linear_model_expand(run->linear, model->n_dof, w->next.second, next->acceleration);
+    fu_linear_model_expand_motion(run->linear, model->n_dof,
+                                  (const double *[]){w->next.y, w->next.rate, w->next.second},
+                                  (double *[]){w->motion.displacement, next->v, next->acceleration});
     place(run, w);
     for (int i = 0; i < MOST_CLOSINGS && run->linear->held.rows; ++i) {
         fu_evaluate_rows(model, next, &run->accelerator);

@@ -7,6 +7,7 @@
  * couplings are evaluated. A search itself visits only the cables and bodies one of whose pairs, as their first part,
  * may have become near. Skipped couplings would contribute nothing, and the others keep their order: results do not
  * depend on the times of searches. */
+#include "base/simd.h"
 #include "couplings/common/coupling_events.h"
 #include "couplings/common/couplings.h"
 #include "couplings/common/proximity.h"
@@ -29,25 +30,33 @@ int fu_acts_alone(const fu_coupling *coupling)
     return type->proximity && !asked;
 }
 
+/* Returns the largest square of the change of a cable's k-th nodal vectors, in a number of dimensions known to the
+ * compiler. */
+FU_INLINE double largest_square(int dim, const fu_cable *cable, int k, const double *to, const double *from)
+{
+    double most = 0.0;
+    FU_EACH_NODE(node, cable)
+    {
+        const double *at = to + node + k * dim, *before = from ? from + node + k * dim : 0;
+        double square = 0.0;
+        for (int d = 0; d < dim; ++d) {
+            const double change = before ? at[d] - before[d] : at[d];
+            square += change * change;
+        }
+        most = square > most ? square : most;
+    }
+    return most;
+}
+
 /* Returns the largest displacement of points of a cable by a change of its nodal vectors, or the speed by their
  * rates. */
 double fu_most_of_cable(const fu_cable *cable, const double *to, const double *from)
 {
-    const int dim = cable->kernel->dim, vectors = cable->kernel->vectors;
     double sum = 0.0;
-    for (int k = 0; k < vectors; ++k) {
-        double most = 0.0;
+    for (int k = 0; k < cable->kernel->vectors; ++k) {
         if (cable->share[k] == 0.0) continue;
-        FU_EACH_NODE(node, cable)
-        {
-            const int first = node + k * dim;
-            double square = 0.0;
-            for (int d = 0; d < dim; ++d) {
-                const double change = to[first + d] - (from ? from[first + d] : 0.0);
-                square += change * change;
-            }
-            most = square > most ? square : most;
-        }
+        const double most =
+            cable->kernel->dim == 2 ? largest_square(2, cable, k, to, from) : largest_square(3, cable, k, to, from);
         sum += cable->share[k] * sqrt(most);
     }
     return sum;
