@@ -25,6 +25,7 @@ PLACES = {
     "joints close loops, in which equations are redundant; their ends and angles are prescribed": [
         "model/redundant_constraints.py", "solve/adjustment/change.py", "solve/notes/sensitivity.py",
         "solve/statics/turns.py"],
+    "the force of a joint, which presses on its friction": ["solve/notes/creep.py"],
     "accelerations of pieces of a cable, whose tangents joints keep parallel": [
         "results/section_forces/nodal_forces.py"],
     "an instant or a frequency of fluids: their signals, tables and added mass": [
@@ -59,7 +60,8 @@ PLACES = {
 SCENE_PLACES = {
     "friction": [
         "choice/indicators.py", "results/rope_tensions.py", "solve/modes/modes.py", "solve/motion/integrator_choice.py",
-        "solve/notes/uncontrolled_errors.py", "solve/statics/static.py", "solve/statics/sticking_ropes.py"],
+        "solve/notes/creep.py", "solve/notes/uncontrolled_errors.py", "solve/statics/static.py",
+        "solve/statics/sticking_ropes.py"],
     "points that move along a cable: slides and crossings": [
         "choice/chooser.py", "choice/probes.py", "results/animation/curves.py", "results/animation/references.py",
         "results/animation/sources.py", "results/charts.py", "results/section_forces/forces.py",

@@ -174,3 +174,22 @@ def test_friction_that_rigid_bodies_do_not_share_is_refused():
     with refused('joint "low": has friction that sticks in a loop with joint "high": rigid bodies do not determine '
                  'what each of them holds at rest; take model="regularised" for all but one of them'):
         door(friction=stick()).run(1.0, output_step=0.1)
+
+
+def test_regularised_friction_that_holds_a_load_says_that_it_creeps():
+    """At v0 x/sqrt(1 - x²), x the share of the limit; a wheel that has stopped without a load does not."""
+    along, mu = np.array([np.cos(0.2), -np.sin(0.2), 0]), 0.3
+    scene = fu.Scene(gravity=(0, -9.81, 0))
+    scene.rigid_body("B", mass=4.0, inertia=(1, 1, 1), position=(0, 0, 0))
+    scene.joint("prismatic", (0, 0, 0), "B", axis=tuple(along), friction=mu, name="rail")
+    run = scene.run(0.5, output_step=0.1, tol=1e-5)
+    share = np.tan(0.2) / mu
+    speed = 1e-3 * share / np.sqrt(1 - share**2)
+    assert run["B.velocity"][-1] @ along == pytest.approx(speed, rel=1e-3)
+    assert run.report["messages"] == [
+        f'joint "rail": its friction is regularised, and creeps under the load that it holds, at {speed:.3g} m/s '
+        'at the end. Take model="stick", which holds it, or a smaller velocity']
+    assert not wheel(3, 1.0).run(1.0, output_step=0.1, tol=1e-5).report["messages"]
+    run = pendulum(0.01, friction=0.4).run(0.5, output_step=0.1, tol=1e-5)
+    (message,) = run.report["messages"]
+    assert f"at {0.05 * abs(run['P.angular_velocity'][-1, 2]):.3g} m/s" in message

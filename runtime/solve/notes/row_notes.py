@@ -14,6 +14,7 @@ from .coarse_contact import CoarseContact
 from .coarse_meshes import CoarseMeshes
 from .coarse_slides import CoarseSlides
 from .coincident_points import CoincidentPoints
+from .creep import Creep
 from .fast_turns import FastTurns
 from .fleet_angles import FleetAngles
 from .folds import Folds
@@ -32,7 +33,7 @@ from .uncontrolled_errors import NormalForces
 NOTES: tuple[type[Note], ...] = (
     StraightStruts, Folds, ReducedStrain, CoarseMeshes, CoarseSlides, Straightened, Sensitivity, SlackMotion,
     CoincidentPoints, FastTurns, NormalForces, SpinningSections, Penetrations, SurfaceEnds, CoarseContact,
-    FleetAngles, SlackRopes)
+    FleetAngles, SlackRopes, Creep)
 
 N = TypeVar("N", bound=Note)
 
