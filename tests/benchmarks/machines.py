@@ -29,8 +29,6 @@ WHEEL_INERTIA, WHEEL_RATE, DISC_RADIUS, CLAMP = 0.5, 10.0, 0.2, 50.0
 ROPE = {"section": fu.GeneralSection(area=1e-5, second_moment_about_y=1e-16, second_moment_about_z=1e-16),
         "material": fu.Material(youngs_modulus=1e11, poisson_ratio=0.3, density=80, damping_time=0.02)}
 """Flexible and light; its longitudinal vibration under the load is damped."""
-SHARP = 1e-5
-"""Speed of regularised friction, m/s."""
 
 
 def saddle() -> tuple[float, float]:
@@ -100,7 +98,7 @@ def wheel() -> tuple[float, float]:
     scene.rigid_body("wheel", mass=3.0, inertia=(0.3, 0.3, WHEEL_INERTIA), position=(0, 0, 0),
                      angular_velocity=(0, 0, WHEEL_RATE))
     scene.joint("revolute", (0, 0, 0), "wheel", axis=(0, 0, 1), radius=DISC_RADIUS, normal_force=CLAMP,
-                friction=fu.Friction(coefficient=ROUGH, velocity=SHARP))
+                friction=fu.Friction(coefficient=ROUGH, model="stick"))
     torque = ROUGH * CLAMP * DISC_RADIUS
     stop = WHEEL_INERTIA * WHEEL_RATE / torque
     run = scene.run(1.1 * stop, output_step=stop / 500, integrator="radau", tol=1e-8)
