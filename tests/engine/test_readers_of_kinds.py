@@ -81,6 +81,7 @@ SCENE_PLACES = {
         "choice/motion.py", "parts/locations.py", "results/animation/clips.py", "results/animation/frames.py",
         "results/animation/ropes.py", "results/error_estimate.py", "results/pictures.py",
         "results/section_forces/ropes.py"],
+    "forces of supports, as the ends of ropes have them": ["results/targets.py"],
     "ropes, and friction, stops and frames of slides, which the linear model does not have": [
         "solve/motion/linear_model.py"],
     "parameters that are adjusted": [

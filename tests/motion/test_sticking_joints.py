@@ -140,7 +140,7 @@ def test_a_pin_of_a_cable_holds_a_beam(integrator):
         turned = np.abs(directions(run, "arm0", 0)[-1])
         assert whats(run) == ["broke loose"] * (part < 1)
         assert turned > 0.05 if part < 1 else turned < 1e-12
-        assert run["energy.dissipated"][-1] == pytest.approx(part * weight * turned, rel=1e-6, abs=1e-12)
+        assert run["energy.dissipated"][-1] == pytest.approx(part * weight * turned, rel=2e-6, abs=1e-12)
         assert np.abs(run.energy_balance().relative).max() < 5e-6
 
 
