@@ -7,9 +7,19 @@ plugins, which takes a tenth of the time to the first result. Plugins observe th
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib import import_module
 from types import ModuleType
+from typing import Any
 
 LOADER = "pydantic.plugin._loader"
+
+
+def _loaded(name: str) -> Any:
+    """Return what another version of pydantic takes from its module, which is then loaded."""
+    if name.startswith("__"):  # the import system asks for these
+        raise AttributeError(name)
+    del sys.modules[LOADER]
+    return getattr(import_module(LOADER), name)
 
 
 @contextmanager
@@ -19,7 +29,7 @@ def no_plugins() -> Iterator[None]:
         yield
         return
     found_none = ModuleType(LOADER)
-    found_none.get_plugins = tuple  # type: ignore[attr-defined]  # an empty one: no plugins
+    vars(found_none).update(get_plugins=tuple, __getattr__=_loaded)  # an empty tuple: no plugins
     sys.modules[LOADER] = found_none
     try:
         yield

@@ -53,6 +53,12 @@ def test_models_of_others_find_their_plugins_of_pydantic():
                       "True", "None", "True"]
 
 
+def test_what_another_version_of_pydantic_takes_from_its_module_is_loaded():
+    assert python("from funicular.parts.plugins import no_plugins\n"
+                  "with no_plugins(): from pydantic.plugin._loader import get_plugins, PYDANTIC_ENTRY_POINT_GROUP\n"
+                  "print(PYDANTIC_ENTRY_POINT_GROUP)").split() == ["pydantic"]
+
+
 def test_the_table_of_lapack_is_that_of_a_later_import():
     python("from funicular.base.lapack import cython_lapack; table = cython_lapack()\n"
            "import scipy.linalg, scipy.sparse.linalg\n"
