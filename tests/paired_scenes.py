@@ -183,12 +183,12 @@ AXES = {"revolute": {"axis": (0, 0, 1)}, "universal": {"axis": (0, 0, 1), "secon
         "prismatic": {"axis": (0, 1, 0)}, "cylindrical": {"axis": (0, 1, 0)}}
 
 
-def _rough_joint(on: Site, kind: str, **given) -> None:
+def _rough_joint(on: Site, kind: str, friction: object = None, **given) -> None:
     """Join a body below the cable to the ground by a joint with friction."""
     place = tuple(on.below(0.6, 0.2))
     on.held("J", place)
-    on.scene.joint(kind, place, "J", **AXES[kind], friction=fu.Friction(coefficient=0.2, velocity=0.01), name="joint",
-                   **{} if kind == "prismatic" else {"radius": 0.02}, **given)
+    on.scene.joint(kind, place, "J", **AXES[kind], friction=friction or fu.Friction(coefficient=0.2, velocity=0.01),
+                   name="joint", **{} if kind == "prismatic" else {"radius": 0.02}, **given)
 
 
 def _joint(on: Site, kind: str, driven: bool) -> None:
@@ -209,6 +209,8 @@ JOINED: dict[str, Callable[[Site], object]] = {
     **{kind: partial(_joint, kind=kind, driven=False) for kind in JOINTS},
     **{f"rough {kind}": partial(_rough_joint, kind=kind) for kind in ROUGH_KINDS},
     "brake": partial(_rough_joint, kind="revolute", normal_force=5.0),
+    "joint that sticks": partial(_rough_joint, kind="revolute", friction=STICK),
+    "brake that sticks": partial(_rough_joint, kind="prismatic", friction=STICK, normal_force=5.0),
     **{f"driven {kind}": partial(_joint, kind=kind, driven=True) for kind in DRIVEN}}
 
 
