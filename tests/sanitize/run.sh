@@ -42,7 +42,7 @@ export ASAN_OPTIONS=detect_leaks=0:abort_on_error=1 UBSAN_OPTIONS=print_stacktra
 "$python" -c "import funicular, sys; sys.exit(funicular.__path__[0] != '$work/site/funicular')"
 if [ $# -eq 0 ]; then
   set -- tests/motion/test_integrators.py tests/motion/test_joints.py tests/contact/test_friction.py tests/motion/test_cable_ends.py \
-    tests/motion/test_events.py tests/motion/test_modal_joints.py tests/motion/test_energy_integrator.py \
+    tests/motion/test_{events,modal_joints,sticking_joints,energy_integrator}.py \
     tests/motion/test_{drums,ropes,ropes_in_space}.py::test_energy_and_the_agreement_of_integrators \
     tests/motion/test_sticking_ropes.py::test_energy_and_the_agreement_of_integrators_where_ropes_stick \
     tests/results/test_streaming.py::test_every_integrator_goes_on_exactly \
