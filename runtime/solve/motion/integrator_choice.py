@@ -55,6 +55,10 @@ LOW_ORDER_TOL_FRACTION = {False: 0.7, True: 0.4}
 (tests/benchmarks/choice.py).
 """
 
+MAX_TOL_WITH_FRICTION = 1.2e-3
+"""Largest tolerance of that method with friction: the energy of stiff cables can grow without bounds in larger steps.
+"""
+
 MAX_LOW_ORDER_COST_RATIO = 4.0
 """Upper bound of the cost of the method of low order over the expected cost of radau."""
 
@@ -118,8 +122,10 @@ def _is_free(settings: RunSettings) -> bool:
 def tol_of(settings: RunSettings, scene: SceneData, method: Integrator) -> float:
     """Return the tolerance of a run's steps: its tol, or less where the method of low order was chosen automatically.
     """
-    reduced = _is_free(settings) and method.name == stable_at(fixed_step=True).name
-    return settings.tol * LOW_ORDER_TOL_FRACTION[has_friction(scene)] if reduced else settings.tol
+    if not _is_free(settings) or method.name != stable_at(fixed_step=True).name:
+        return settings.tol
+    friction = has_friction(scene)
+    return min(settings.tol * LOW_ORDER_TOL_FRACTION[friction], MAX_TOL_WITH_FRICTION if friction else math.inf)
 
 
 def _asked_for(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> tuple[Integrator, str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...engine import Engine, outputs_by_name
-from ...integrators import GeneralisedAlpha, stable_at
+from ...integrators import AUTO, GeneralisedAlpha, stable_at
 from ...model.model import SlideModel
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
@@ -67,10 +67,8 @@ def uncontrolled_errors(scene: SceneData, engine: Engine, settings: RunSettings,
 
 
 def _of_genalpha(scene: SceneData, engine: Engine, settings: RunSettings, turns: FastTurns | None) -> list[str]:
-    """Friction by a spectral radius above the default, bodies that turn fast, slides that outrun the waves of their
-    cable.
-    """
-    rubs = (settings.spectral_radius or 0.0) > GeneralisedAlpha.default_with_friction
+    """Friction, unless "auto" allows for it, bodies that turn fast, slides that outrun the waves of their cable."""
+    rubs = settings.integrator != AUTO or settings.spectral_radius is not None
     fast = [] if turns is None else turns.uncontrolled(engine.statistics["steps"], settings.tol)
     errors = [*(f'the friction of slide "{name}"' for name in scene.slides if rubs and _has_friction(scene, name)),
               *(f'how fast body "{name}" turns' for name in fast),
