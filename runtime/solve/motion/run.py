@@ -242,7 +242,7 @@ def _begun(scene: SceneData, settings: RunSettings, ready: _Prepared, method: In
     model, engine, event_handler, _ = ready
     status, gaps, change = _start(scene, settings, model, engine, method, None if stream is None else blocks.capacity)
     event_handler.change_signals = lambda restarts: engine.change_signals(
-        model, _breakpoints(scene, model, settings, method), restarts)
+        model, _breakpoints(model, settings, method, tol_of(settings, scene, method)), restarts)
     row_notes = RowNotes(scene, model, settings.step_taken or 0.0, settings.duration)
     if stream is not None and status is None:
         stream.start(model, engine, blocks, event_handler.happened, row_notes, on_trial)
@@ -251,10 +251,10 @@ def _begun(scene: SceneData, settings: RunSettings, ready: _Prepared, method: In
     return _Begun(model, engine, event_handler, status, gaps, change, observer, row_notes, clock.wall)
 
 
-def _breakpoints(scene: SceneData, model: Model, settings: RunSettings,
-                 method: Integrator) -> tuple[np.ndarray, np.ndarray]:
+def _breakpoints(model: Model, settings: RunSettings, method: Integrator,
+                 tol: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the instants at which steps of a run end, see `breakpoints`."""
-    return breakpoints(model, settings.duration, tol_of(settings, scene, method), turns=settings.step is None,
+    return breakpoints(model, settings.duration, tol, turns=settings.step is None,
                        nodes=method.order > 2)
 
 
@@ -275,7 +275,7 @@ def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine
         **_control(settings, scene, model),
         method=method,
         first_step=min(settings.output_step, 1e-3 * settings.duration),
-        breakpoints=_breakpoints(scene, model, settings, method),
+        breakpoints=_breakpoints(model, settings, method, tol),
         capacity=capacity,
     )
     if status == "singular" and engine.self_locking >= 0:
