@@ -113,6 +113,11 @@ def same(one: str, other: str) -> bool:
     return one.split(":")[:parts] == other.split(":")[:parts]
 
 
+TOLD_SHARE, TOLD_SHARES = 0.05, {"from_relaxed": 0.4}
+"""How many rows may find no equilibrium, of those that work: a damped motion of 3,000 steps does not bring 7 of 26
+scenes with slack ropes and released beams to rest, nor do 10,000 steps.
+"""
+
 GUESSES = 4
 """How many sets of factors are tried before all levels of a row are left out one by one."""
 
@@ -133,7 +138,8 @@ def _guesses(found: str) -> list[frozenset[str]]:
                                               if same(error, found)).most_common(GUESSES)]
 
 
-def answered(array: CoveringArray, neutral: dict[str, list[str]]) -> dict[frozenset[Level], str]:
+def answered(array: CoveringArray, neutral: dict[str, list[str]],
+             most_told: float = TOLD_SHARE) -> dict[frozenset[Level], str]:
     """Answer all rows of an array; return the errors by minimal set of levels.
 
     A few rows may find no equilibrium, where the scene is too difficult and not the combination. A belt without
@@ -152,7 +158,7 @@ def answered(array: CoveringArray, neutral: dict[str, list[str]]) -> dict[frozen
             array.refuse(levels)
             if not found.startswith(REFUSED):
                 errors[levels] = found
-    assert counts[TOLD] <= 1 + 0.05 * counts[WORKS], counts
+    assert counts[TOLD] <= 1 + most_told * counts[WORKS], counts
     return errors
 
 
@@ -176,7 +182,8 @@ def asked(questions: Sequence[str], of: Sequence[str] | None = None) -> dict[fro
                                     if of is None or {factor for factor, _ in pair} - set(of) == {"question"}])
     for levels in descriptions()[0].refused:
         array.refuse(levels)
-    errors = answered(array, NEUTRAL | {"question": questions[:1]})
+    most_told = max(TOLD_SHARES.get(question, TOLD_SHARE) for question in questions)
+    errors = answered(array, NEUTRAL | {"question": questions[:1]}, most_told)
     assert frozenset() not in array.refused, "it is never answered"
     return errors
 
