@@ -104,7 +104,7 @@ def check_comes_to_rest(scene: SceneData) -> None:
                 raise SceneError(part.where, f"{name} changes with time, so that the scene does not come to rest",
                                  "take a constant value, with scene.replace")
     for part in scene.rubbing:
-        if part.friction is not None and not part.friction.sticks and part.friction.sliding > 0:
+        if part.friction is not None and part.friction.creeps:
             raise SceneError(part.where, "its friction is regularised, so that it creeps and never comes to rest",
                              'take model="stick", which holds it, or leave friction out')
     for contact in scene.contacts.values():

@@ -62,6 +62,11 @@ class Friction(Part):
         return self.model == "stick"
 
     @property
+    def creeps(self) -> bool:
+        """Return whether it is regularised, and slides under any load."""
+        return not self.sticks and self.sliding > 0
+
+    @property
     def sliding(self) -> float:
         """Return the sum of the coefficients of sliding and rolling."""
         return self.coefficient + self.rolling

@@ -6,19 +6,6 @@
 #include "linear/columns.h"
 #include "linear/fronts.h"
 
-/* Subtracts from the rows `first` to `end`, in whole blocks, four columns times a factor each. */
-FU_INLINE void subtract_in_turn(int first, int end, const double *const column[4], const double factor[4], double *x)
-{
-    for (int k = first; k < end; k += FU_SIMD_WIDTH) {
-        fu_simd_block of = *(fu_simd_block *)(x + k);
-        of -= *(const fu_simd_block *)(column[0] + k) * factor[0];
-        of -= *(const fu_simd_block *)(column[1] + k) * factor[1];
-        of -= *(const fu_simd_block *)(column[2] + k) * factor[2];
-        of -= *(const fu_simd_block *)(column[3] + k) * factor[3];
-        *(fu_simd_block *)(x + k) = of;
-    }
-}
-
 FU_INLINE int in_blocks(int rows)
 {
     return (rows + FU_SIMD_WIDTH - 1) / FU_SIMD_WIDTH * FU_SIMD_WIDTH;

@@ -1,6 +1,7 @@
 /* Bordered band systems: the chain of a cable's nodes is banded; riders, joints, and nodes where more than two cables
  * meet, are the border. The solution for a column of the border is nonzero in the chains that it touches only. */
 #include "base/simd.h"
+#include "linear/columns.h"
 #include "linear/linear.h"
 
 #include <math.h>
@@ -314,14 +315,10 @@ static void solve_border(const fu_system *s, const fu_lapack *lapack, double *y)
     else lapack->dgetrs("N", &m, &one, s->D, &m, s->pivot_border, y, &m, &info);
 }
 
-/* Subtracts from the rows of x a column of X times a factor. */
-FU_INLINE void take_column(fu_span rows, const double *column, double factor, double *x)
+FU_INLINE void take_column(const fu_system *s, const fu_matrix_block *p, const double *y, double *x)
 {
-    long i = rows.first;
-    const long end = rows.end;
-    for (; i + FU_SIMD_WIDTH <= end; i += FU_SIMD_WIDTH)
-        *(fu_simd_block *)(x + i) -= *(const fu_simd_block *)(column + i) * factor;
-    for (; i < end; ++i) x[i] -= factor * column[i];
+    const double *column = s->X + s->strips[p->strip].x;
+    subtract_one(p->rows.end - p->rows.first, column + p->rows.first, y[p->k], x + p->rows.first);
 }
 
 enum { TAKEN = 4 }; /* columns for which x passes through the registers once */
@@ -341,18 +338,11 @@ FU_INLINE void take_columns_at_once(const fu_system *s, const fu_matrix_block *p
         all = (fu_span){rows.first < all.first ? rows.first : all.first, rows.end > all.end ? rows.end : all.end};
         sum += rows.end - rows.first;
     }
-    if (2 * (all.end - all.first) > sum) { /* TAKEN / 2 times as many as there are */
-        for (int k = 0; k < TAKEN; ++k) take_column(p[k].rows, column[k], factor[k], x);
+    if (2 * (all.end - all.first) > sum) { /* more than half of the numbers there are zeros beside the rows */
+        for (int k = 0; k < TAKEN; ++k) take_column(s, p + k, y, x);
         return;
     }
-    for (long i = all.first; i < all.end; i += FU_SIMD_WIDTH) {
-        fu_simd_block of = *(fu_simd_block *)(x + i);
-        of -= *(const fu_simd_block *)(column[0] + i) * factor[0];
-        of -= *(const fu_simd_block *)(column[1] + i) * factor[1];
-        of -= *(const fu_simd_block *)(column[2] + i) * factor[2];
-        of -= *(const fu_simd_block *)(column[3] + i) * factor[3];
-        *(fu_simd_block *)(x + i) = of;
-    }
+    subtract_in_turn(all.first, all.end, column, factor, x);
 }
 
 FU_INLINE void take(const fu_system *s, const double *y, double *x)
@@ -360,7 +350,7 @@ FU_INLINE void take(const fu_system *s, const double *y, double *x)
     for (int c = 0; c < s->n_chains; ++c) {
         const fu_matrix_block *p = s->columns + FU_HALVES * s->chain_start[c], *end = p + s->n_columns[c];
         for (; p + TAKEN <= end; p += TAKEN) take_columns_at_once(s, p, y, x);
-        for (; p < end; ++p) take_column(p->rows, s->X + s->strips[p->strip].x, y[p->k], x);
+        for (; p < end; ++p) take_column(s, p, y, x);
     }
 }
 

@@ -26,6 +26,19 @@ FU_INLINE void subtract_one(long n, const double *column, double factor, double 
     for (; i < n; ++i) to[i] -= column[i] * factor;
 }
 
+/* Subtracts from the rows `first` to `end`, in whole blocks, four columns times a factor each. */
+FU_INLINE void subtract_in_turn(int first, int end, const double *const column[4], const double factor[4], double *x)
+{
+    for (int k = first; k < end; k += FU_SIMD_WIDTH) {
+        fu_simd_block of = *(fu_simd_block *)(x + k);
+        of -= *(const fu_simd_block *)(column[0] + k) * factor[0];
+        of -= *(const fu_simd_block *)(column[1] + k) * factor[1];
+        of -= *(const fu_simd_block *)(column[2] + k) * factor[2];
+        of -= *(const fu_simd_block *)(column[3] + k) * factor[3];
+        *(fu_simd_block *)(x + k) = of;
+    }
+}
+
 /* Computes the factors of four pivots from k on in a column, and eliminates them from each other. */
 FU_INLINE void factors_of_four(const double *F, int n, int k, double *restrict column, double factor[4])
 {

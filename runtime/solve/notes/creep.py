@@ -9,7 +9,6 @@ import numpy as np
 from ...engine import outputs_by_name
 from ...model.joints import JointFrictionModel
 from ...model.model import SlideModel
-from ...parts.friction import Friction
 from ...parts.joint import Joint
 from ...parts.slide import Slide
 from .note import Note, Rows
@@ -33,7 +32,7 @@ class Creep(Note):
     def _speeds(self, rows: Rows) -> Iterator[tuple[Slide | Joint, np.ndarray]]:
         """Yield the parts with their speeds in these rows."""
         for k, slide in enumerate(self.scene.slides.values()):
-            if not slide.is_driven and _rubs(slide.friction):
+            if not slide.is_driven and slide.friction is not None and slide.friction.creeps:
                 yield slide, np.abs(outputs_by_name("slide", rows["slide"][:, k])["s_rate"])
         numbers = {joint.number: k for k, joint in enumerate(self.model.joints)}
         for k, friction in enumerate(self.model.of(JointFrictionModel)):
@@ -58,10 +57,6 @@ def _of_rows(rows: Rows) -> Iterator[tuple[str, np.ndarray]]:
     for name in ("slide", "joint", "joint_friction"):
         if name in rows:
             yield name, rows[name]
-
-
-def _rubs(friction: Friction | None) -> bool:
-    return friction is not None and not friction.sticks and friction.sliding > 0
 
 
 def _wrench(kind: str, rows: Rows, k: int) -> tuple[np.ndarray, np.ndarray]:
