@@ -165,7 +165,7 @@ cdef class Engine(Report):
     blocks: use kernels of several elements at once where they exist.
     """
 
-    cdef object event_handler, error
+    cdef object event_handler, error, __weakref__
     cdef bint has_started
 
     cdef int _check_started(self) except -1:

@@ -1,6 +1,7 @@
 """fu.run_many has the bits of scene.run, for one shape and several, on any number of threads; failures stay separate.
 """
 
+import gc
 import threading
 import weakref
 from functools import partial
@@ -10,6 +11,7 @@ import funicular as fu
 import numpy as np
 import pytest
 from choice_scenes import SCENES
+from funicular.engine import Engine
 from funicular.solve.motion import run as solve_run
 from funicular.sweeps import many_scenes
 from setup import forget
@@ -154,6 +156,29 @@ def test_memory_does_not_grow_with_their_number():
         assert len(alive) <= in_advance + 4
     results.close()
     assert not [t for t in threading.enumerate() if t.name.startswith("funicular")]
+
+
+@pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.slow_cases("tied")
+def test_a_run_is_freed_as_its_last_reference_goes(shape):
+    """Its engine has no cycle, which Python's collector would leave for long: it counts objects, not their bytes."""
+    def engines() -> int:
+        return sum(type(each) is Engine for each in gc.get_objects())
+
+    gc.collect()
+    before, scene = engines(), SHAPES[shape]()
+    freed = weakref.ref(scene)
+    gc.disable()
+    try:
+        run = scene.run(**SETTINGS)
+        assert run.status
+        del run
+        assert engines() == before
+        del scene
+        assert freed() is None
+    finally:
+        gc.enable()
 
 
 def test_what_is_left_is_given_up_at_once():

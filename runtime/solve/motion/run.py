@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import math
 import warnings
+import weakref
 from collections.abc import Callable, Container
 from functools import partial
 from typing import Any, NamedTuple, Protocol
@@ -240,9 +241,12 @@ def _begun(scene: SceneData, settings: RunSettings, ready: _Prepared, method: In
            progress: ProgressDisplay, stream: RowStream | None, clock: StageClock, on_trial: bool = False) -> _Begun:
     """Start a prepared run, with its stream; on_trial: it may begin anew with another method."""
     model, engine, event_handler, _ = ready
-    status, gaps, change = _start(scene, settings, model, engine, method, None if stream is None else blocks.capacity)
-    event_handler.change_signals = lambda restarts: engine.change_signals(
-        model, _breakpoints(model, settings, method, tol_of(settings, scene, method)), restarts)
+    tol = tol_of(settings, scene, method)
+    status, gaps, change = _start(scene, settings, model, engine, method, tol,
+                                  None if stream is None else blocks.capacity)
+    changed = weakref.proxy(engine)  # which has the handler: without a cycle a run that ends is freed at once
+    event_handler.change_signals = lambda restarts: changed.change_signals(
+        model, _breakpoints(model, settings, method, tol), restarts)
     row_notes = RowNotes(scene, model, settings.step_taken or 0.0, settings.duration)
     if stream is not None and status is None:
         stream.start(model, engine, blocks, event_handler.happened, row_notes, on_trial)
@@ -258,11 +262,10 @@ def _breakpoints(model: Model, settings: RunSettings, method: Integrator,
                        nodes=method.order > 2)
 
 
-def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine, method: Integrator,
+def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine, method: Integrator, tol: float,
            capacity: int | None) -> tuple[str | None, list[str], np.ndarray]:
     """Start the engine; return the status where the run has ended, else None. Raises SceneError for a singular start.
     """
-    tol = tol_of(settings, scene, method)
     if method.is_linear:
         from .linear_model import take_linear_model  # loads SciPy, which other runs do without
 
