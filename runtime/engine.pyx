@@ -356,17 +356,10 @@ cdef class Engine(Report):
                         stream.pause()
                 if stream is not None:
                     stream.between()
-                if status == FU_EVENT and run.event.kind in (FU_ACTED, FU_DEFERRED, FU_WENT_SLACK):
-                    self._tell()
-                    status = FU_RUNNING
                 if status == FU_EVENT:
-                    if not self.event_handler.happens(run.event.which, *self._snapshot(&run.now)):
-                        while fu_take_deferred(run):  # of the step that ended there
-                            self._tell()
-                        with nogil:
-                            status = fu_stop(run)
+                    status = self._after_event()
+                    if status:
                         break
-                    status = FU_RUNNING
                 if status == FU_RUNNING:
                     PyErr_CheckSignals()
                     check_interrupted()
@@ -376,6 +369,21 @@ cdef class Engine(Report):
         except KeyboardInterrupt:
             return "interrupted"
         return STATUS[status]
+
+    cdef int _after_event(self) except -1:
+        """Report an event; return FU_RUNNING, or the status of a run that ends there, with its last row."""
+        cdef int status
+        run = &self.run
+        if run.event.kind in (FU_ACTED, FU_DEFERRED, FU_WENT_SLACK):
+            self._tell()
+            return FU_RUNNING
+        if self.event_handler.happens(run.event.which, *self._snapshot(&run.now)):
+            return FU_RUNNING
+        while fu_take_deferred(run):  # of the step that ended there
+            self._tell()
+        with nogil:
+            status = fu_stop(run)
+        return status
 
     cdef _tell(self):
         """Report the event of a part to the event handler."""
@@ -491,3 +499,6 @@ cdef class Engine(Report):
     def static_farthest(self, str kind):
         """Return (couplings,): largest distance of contact beyond the ends of the surface in the static state, m."""
         return np.array([fu_beyond(&self.model, self.couplings[<int>number], &self.run.next) for number in self._of(kind)])
+
+
+include "engine/cython/stepping.pxi"

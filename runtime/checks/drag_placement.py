@@ -47,7 +47,7 @@ def placed_drag(scene: SceneData, drag: Drag) -> Drag:
     elif isinstance(drag.added_mass, tuple):
         raise SceneError(drag.where, f"acts on {mass.where}, whose added_mass is one number",
                          "give that of a sphere, 0.5, or take a rigid body on a joint")
-    acts = drag.area * (drag.coefficient or drag.lift) != 0 or (drag.area != 0 and drag.polar is not None)
+    acts = drag.area * (drag.drag_coefficient or drag.lift) != 0 or (drag.area != 0 and drag.polar is not None)
     if not acts and drag.volume == 0:
         raise SceneError(drag.where, "has neither drag nor buoyancy", "give an area with a coefficient, or a volume")
     _check_added_mass(drag, drag.volume, "volume, in m³")
@@ -265,7 +265,7 @@ def _check_foil(scene: SceneData, drag: Drag) -> None:
         _refuse_chord(drag)
         if drag.lift == 0 and drag.span is not None:
             raise SceneError(drag.where, "span is given without lift or a polar", "give one of them, or leave span out")
-    elif drag.lift != 0 or drag.coefficient != Drag.model_fields["coefficient"].default:
+    elif drag.lift != 0 or drag.coefficient is not None:
         raise SceneError(drag.where, "has a polar and " + ("lift" if drag.lift else "a coefficient"),
                          "leave it out: the polar has both coefficients")
     elif drag.chord is None:

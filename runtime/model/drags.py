@@ -172,7 +172,7 @@ def _in_fluid(part: Drag, fluid: Fluid, builder: ModelBuilder, stretch: UniformP
         added = part.added_of_body(dim) if line is None else part.added_of_cable()
         model.entries["added"] = (displaced * added).ravel()
     if line is None or stretch is None:
-        coefficient = part.coefficient if part.polar is None else 0.0
+        coefficient = part.drag_coefficient if part.polar is None else 0.0
         model.coefficients = (fluid.density / 2 * part.area * coefficient, MIN_SPEED)
         model.attachments = [_point(part, builder)]
     else:

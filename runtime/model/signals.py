@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
@@ -12,13 +12,14 @@ from ..parts.signal import DEGREE, Constant, Signal, Sine, switched, times_at, v
 
 @dataclass
 class SignalModel:
-    """f(t) = polynomial piece of t - break + amplitude sin(angular_frequency t + phase)."""
+    """f(t) = polynomial piece of t - break + amplitude sin(angular_frequency t + phase); of: the signal of a scene."""
 
     breaks: np.ndarray
     coefficients: np.ndarray
     amplitude: float
     angular_frequency: float
     phase: float
+    of: Signal | None = None
 
     def value(self, time: np.ndarray, derivative: int = 0) -> np.ndarray:
         """Return the signal, or a derivative of it, at the times ``time``, s."""
@@ -60,9 +61,17 @@ class Signals(list[SignalModel]):
             return False
         self.happened[event] = time
         waiting = [each for each in self.switched if event in each[2:]]
-        for number, signal, when, until in waiting:
-            self[number] = _model(switched(signal, when, until, self.happened))
+        self._renew(waiting)
         return bool(waiting)
+
+    def return_to(self, happened: Mapping[str, float]) -> None:
+        """Return to the times of events that had happened, s."""
+        self.happened = dict(happened)
+        self._renew(self.switched)
+
+    def _renew(self, changed: Iterable[tuple[int, Signal, str | None, str | None]]) -> None:
+        for number, signal, when, until in changed:
+            self[number] = _model(switched(signal, when, until, self.happened))
 
     def add_steps(self, times: np.ndarray, values: np.ndarray) -> int:
         """Store a signal that has each value from its time on and return its number, -1 for one that is always one."""
@@ -86,4 +95,4 @@ class Signals(list[SignalModel]):
 
 def _model(signal: Signal) -> SignalModel:
     breaks, coefficients = signal.pieces()
-    return SignalModel(np.asarray(breaks, dtype=float), np.asarray(coefficients, dtype=float), *signal.sine)
+    return SignalModel(np.asarray(breaks, dtype=float), np.asarray(coefficients, dtype=float), *signal.sine, signal)

@@ -87,7 +87,7 @@ class Drag(Part):
         of a tube; 0 for no buoyancy
     lift: C_L, of either sign: of a cable ``ρ/2 d C_L |w_n| i × w_n`` a length, of a body ``ρ/2 area C_L |w_p| s × w_p``
     area: of a body, m²
-    coefficient: of a body, of the force ``ρ/2 area coefficient |w| w`` at ``at``
+    coefficient: of a body, of the force ``ρ/2 area coefficient |w| w`` at ``at``; by default 1
     polar: coefficients by the angle of the flow from the ``chord``. Of a body, about the span, in the place of
         coefficient and lift; drag is then along w_p. Of a spatial beam, about i, in the place of normal and lift, with
         the moment ``ρ/2 d² C_M |w_n|²`` a length
@@ -121,7 +121,7 @@ class Drag(Part):
     displaced_area: Annotated[float, not_negative("m²")] | None = None
     lift: Annotated[float, finite()] = 0.0
     area: Annotated[float, not_negative("m²")] = 0.0
-    coefficient: Annotated[float, not_negative()] = 1.0
+    coefficient: Annotated[float, not_negative()] | None = None
     polar: Polar | None = None
     span: Annotated[Vector, direction("on", AXIS)] | None = None
     chord: Annotated[Vector, direction(of="on")] | None = None
@@ -154,6 +154,11 @@ class Drag(Part):
         span /= np.linalg.norm(span)
         chord = np.zeros(3) if self.chord is None else np.array(self.chord) / np.linalg.norm(self.chord)
         return span, chord
+
+    @property
+    def drag_coefficient(self) -> float:
+        """Return ``coefficient``, 1 where it is not given."""
+        return 1.0 if self.coefficient is None else self.coefficient
 
     def added_of_cable(self) -> np.ndarray:
         """Return the coefficients of added mass of a cable, across and along it (2,)."""

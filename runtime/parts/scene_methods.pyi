@@ -314,7 +314,7 @@ class SceneMethods(SceneData):
         displaced_area: float | None = None,
         lift: float = 0.0,
         area: float = 0.0,
-        coefficient: float = 1.0,
+        coefficient: float | None = None,
         polar: Polar | dict[str, Any] | None = None,
         span: Numbers | None = None,
         chord: Numbers | None = None,

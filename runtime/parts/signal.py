@@ -66,6 +66,11 @@ class Signal(Part):
         """Return the sine that is added to the polynomials."""
         return Sine()
 
+    @property
+    def is_known(self) -> bool:
+        """Return whether its pieces are those of all times, and not those of the start of a simulation alone."""
+        return True
+
     def value(self, time: "ArrayLike", derivative: int = 0) -> np.ndarray:
         """Return the signal, or a derivative of it, at times of any shape, in s."""
         return value_at(self.sine, *self.pieces(), time, derivative)
@@ -352,6 +357,11 @@ class Integral(Signal):
         amplitude, w, phase = self.rate.sine
         return Sine(amplitude / w if amplitude else 0.0, w, phase - pi / 2)
 
+    @property
+    def is_known(self) -> bool:
+        """Return whether its rate is, see `Signal.is_known`."""
+        return self.rate.is_known
+
 
 class Switched(Signal):
     """Zero until the time ``begin``, s, from there ``signal`` by the time since then, and zero again from ``end`` on;
@@ -418,6 +428,11 @@ class CombinedSignal(Signal):
         return Sine(abs(total), next((sine.angular_frequency for _, sine in sines if sine.amplitude), 0.0),
                     cmath.phase(total))
 
+    @property
+    def is_known(self) -> bool:
+        """Return whether all its signals are, see `Signal.is_known`."""
+        return all(signal.is_known for signal in self.signals)
+
 
 def _shifted(coefficients: np.ndarray, by: np.ndarray) -> np.ndarray:
     """Return the coefficients (n, 7) of polynomials of t as polynomials of t - by, by (n,)."""
@@ -449,6 +464,8 @@ def combined(factors: Sequence[float], signals: Sequence[Signal]) -> Signal:
 
 def _vanishes(made: CombinedSignal) -> bool:
     """Return whether the terms of a sum cancel at all times to rounding."""
+    if not made.is_known:
+        return False
     breaks, total = made.pieces()
     terms = [abs(factor) * max(np.abs(signal.value(breaks)).max(), abs(signal.sine.amplitude))
              for factor, signal in zip(made.factors, made.signals, strict=True)]

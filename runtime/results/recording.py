@@ -15,7 +15,7 @@ from ..model.part_states import States, part_states
 from ..parts.modal_body import ModalBody
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
-from ..solve.motion.run import FAILED_STATUSES, Simulation
+from ..solve.motion.run import FAILED_STATUSES, Simulated
 from ..solve.notes.coincident_points import CoincidentPoints
 from ..solve.notes.diagnosis import RESULTS_KEPT, rope_left, stopped
 from .quantities import ENERGIES, Variable, labelled
@@ -80,7 +80,7 @@ def coordinates(model: Model, time: np.ndarray) -> dict[str, Variable]:
     return coords
 
 
-def recorded(simulation: Simulation, scene: SceneData, settings: RunSettings, timed: bool = True) -> Recording:
+def recorded(simulation: Simulated, scene: SceneData, settings: RunSettings, timed: bool = True) -> Recording:
     """Return the rows of the engine by name, and the report on the run; timed: with the times of slides and joints,
     whose measurement takes up to 0.1 ms.
     """
@@ -128,7 +128,7 @@ def _costs(model: Model, engine: Engine) -> dict[str, float]:
     return found
 
 
-def _message(simulation: Simulation, scene: SceneData, settings: RunSettings) -> str:
+def _message(simulation: Simulated, scene: SceneData, settings: RunSettings) -> str:
     model, engine, status = simulation.model, simulation.engine, simulation.status
     when = f"t = {engine.time:.6g} s of {settings.duration:.6g} s"
     match status:

@@ -17,7 +17,14 @@ import numpy as np
 
 from ..base.named_arrays import NamedArrays
 from ..base.written_files import write_whole
-from ..errors import FunicularWarning, UnknownResultError, near
+from ..errors import (
+    ConvergenceError,
+    EndOfCableError,
+    FunicularWarning,
+    RopeLeftError,
+    UnknownResultError,
+    near,
+)
 from ..parts.cable import Cable
 from ..parts.in_plane import in_plane
 from ..parts.rope import Rope
@@ -427,3 +434,13 @@ def _largest_costs(costs: dict[str, float]) -> str:
 
 def _relative(error: float) -> str:
     return "unknown" if np.isnan(error) else f"{error:.1e}"
+
+
+def raise_where_stopped(run: Run) -> None:
+    """Raise EndOfCableError, RopeLeftError or ConvergenceError by the status of a run."""
+    if run.status == "end_of_cable":
+        raise EndOfCableError(run.report["message"], run)
+    if run.status == "rope_left":
+        raise RopeLeftError(run.report["message"], run)
+    if run.status == "no_convergence":
+        raise ConvergenceError(run.report["message"], run)

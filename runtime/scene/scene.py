@@ -12,12 +12,9 @@ from typing import TYPE_CHECKING, Any, Never, Self, cast
 from ..base.interruptions import interruptible, uninterrupted, was_interrupted
 from ..base.stages import Stages, at_once
 from ..errors import (
-    ConvergenceError,
-    EndOfCableError,
     EquilibriumError,
     FunicularWarning,
     ResultFileError,
-    RopeLeftError,
     SceneError,
     enough_memory,
     near,
@@ -25,7 +22,7 @@ from ..errors import (
 from ..parts.in_plane import in_plane
 from ..parts.settings import EquilibriumSettings, ModeSettings, RelaxationSettings, RunSettings, overridden
 from ..parts.validation import show, shown
-from ..results.run import Run
+from ..results.run import Run, raise_where_stopped
 from ..results.viewable import Viewable
 from ..solve.linear.threads import one_blas_thread
 from ..solve.motion.progress import progress_bar
@@ -39,6 +36,7 @@ if TYPE_CHECKING:
     from ..choice.choice import Choice
     from ..results.equilibrium import Equilibrium
     from ..results.modes import Modes
+    from ..results.simulation import Simulation
     from ..results.streaming import Stream
     from ..solve.motion.run import Start
     from ..solve.motion.trial_cache import TrialCache
@@ -132,7 +130,16 @@ class Scene(Viewable, DescribedScene):
 
         timed: whether the report is to have the times of slides and joints.
         """
-        given = {name: value for name, value in settings_given.items() if value is not None}
+        scene, settings, state, chosen = self._settled(
+            {name: value for name, value in settings_given.items() if value is not None})
+        scene._check_for(settings)
+        _check_resume(resume, settings)
+        return scene._simulated(settings, state, resume, progress, chosen, trials, timed)
+
+    def _settled(self, given: dict[str, Any]) -> tuple[Self, RunSettings, Start | None, Choice[Self] | None]:
+        """Return the scene of a run with these settings, chosen and adjusted, the settings, the state to start from,
+        and the choice.
+        """
         initial = given.get("initial")
         state = None if initial is None or isinstance(initial, str) else _state(self, initial)
         if state is not None:
@@ -145,9 +152,7 @@ class Scene(Viewable, DescribedScene):
         chosen = self._chosen_for(settings)
         scene, settings = (self, settings) if chosen is None else (chosen.scene, chosen.settings_of(settings))
         scene, state = scene._adjusted(settings, state)
-        scene._check_for(settings)
-        _check_resume(resume, settings)
-        return scene._simulated(settings, state, resume, progress, chosen, trials, timed)
+        return scene, settings, state, chosen
 
     def _adjusted(self, settings: RunSettings, state: Start | None) -> tuple[Self, Start | None]:
         """Return the scene and the state at the start of a run, adjusted where the scene's file adjusts parameters."""
@@ -235,7 +240,7 @@ class Scene(Viewable, DescribedScene):
             if was_interrupted() and run.status != "interrupted":
                 warnings.warn("the interruption came after the end of the run: its results are complete",
                               FunicularWarning, stacklevel=5)
-        _raise_where_stopped(run)
+        raise_where_stopped(run)
         return run
 
     def _saving(self, settings: RunSettings, resume: bool) -> AbstractContextManager[Stream | None]:
@@ -271,6 +276,58 @@ class Scene(Viewable, DescribedScene):
             return
         run.report["errors"] = found.as_report()
         run.report["messages"] += found.messages
+
+    def simulation(
+        self,
+        inputs: Sequence[str] = (),
+        *,
+        duration: float | None = None,
+        tol: float | None = None,
+        absolute_tol: float | None = None,
+        quantities: Sequence[str] | None = None,
+        step: float | None = None,
+        output_step: float | None = None,
+        integrator: str | None = None,
+        spectral_radius: float | None = None,
+        model: str | None = None,
+        initial: str | Equilibrium | Mapping[str, ArrayLike] | None = None,
+        threads: int | None = None,
+        **unknown: Never,
+    ) -> Simulation:
+        """Begin a run that is stepped from outside, as by a controller or another program; see `Simulation`.
+
+        inputs: paths to loads, drives, motions and velocities of fluids, as in sweeps, whose values are given between
+        steps: "push.value.x" (N), a component of a load; "push.scale"; "winch.velocity" of a driven slide or joint;
+        "hinge.angle"; "wind.velocity.x". They begin with the scene's values. duration: where the end is known; it may
+        be passed. Without one `step` continues as long as it is called. The other settings are those of `run`.
+
+        >>> import funicular as fu
+        >>> scene = fu.load_scene("paper51")
+        >>> sim = scene.simulation(tol=1e-3)
+        >>> sim.step(0.01)
+        >>> sim["A.position"].shape
+        (3,)
+
+        Raises SceneError, EquilibriumError.
+        """
+        _refuse_unknown("simulation", unknown, (*RunSettings.keywords(), "inputs"))
+        given = {"duration": duration, "tol": tol, "absolute_tol": absolute_tol, "quantities": quantities, "step": step,
+                 "output_step": output_step, "integrator": integrator, "spectral_radius": spectral_radius,
+                 "threads": threads, "model": model, "initial": initial}
+        from ..parts.inputs import with_inputs
+        from ..results.simulation import Simulation  # brings SciPy
+
+        known_end = duration is not None or "duration" in self.run_settings
+        if not known_end:
+            given["duration"] = 1.0 if output_step is None else 100.0 * output_step
+        scene, settings, state, _ = self._settled({k: v for k, v in given.items() if v is not None})
+        driven, found = with_inputs(scene, inputs, "simulation")
+        driven._check_for(settings)
+        with enough_memory():
+            if settings.initial in ("equilibrium", "relaxed") and state is None:
+                state = _at_rest(settings.initial, driven, None)
+            return Simulation(driven, in_plane(driven), settings, state, {each.path: each for each in found}, known_end,
+                              self.from_toml)
 
     def equilibrium(
         self,
@@ -404,16 +461,6 @@ def _check_resume(resume: bool, settings: RunSettings) -> None:
         raise SceneError("run", f"resume must be true or false, got {shown(resume)}")
     if resume and settings.save is None:
         raise ResultFileError("run: there is nothing to resume without a file of results; name it with save")
-
-
-def _raise_where_stopped(run: Run) -> None:
-    """Raise EndOfCableError, RopeLeftError or ConvergenceError by the status of a run."""
-    if run.status == "end_of_cable":
-        raise EndOfCableError(run.report["message"], run)
-    if run.status == "rope_left":
-        raise RopeLeftError(run.report["message"], run)
-    if run.status == "no_convergence":
-        raise ConvergenceError(run.report["message"], run)
 
 
 def _at_rest(initial: str, scene: Scene, start: Equilibrium | None) -> Equilibrium:

@@ -168,6 +168,20 @@ def resumed(on: Asked) -> None:
 
 # ---- results and pictures
 
+def stepped(on: Asked) -> None:
+    """Step a scene as its run does, return to a state in between, and go on."""
+    run, sim = on.run(), on.scene.simulation(integrator=on.integrator)
+    output_step = run.time[1] if len(run.time) > 1 else TIME
+    for k in range(1, min(3, len(run.time))):
+        kept = sim.state
+        sim.step(output_step)
+        sim.state = kept
+        sim.step(output_step)
+        assert sim.time == run.time[k]
+        for name, values in run.items():
+            assert sim[name].tobytes() == values[k].tobytes(), name
+
+
 def forces_in_sections(on: Asked) -> None:
     run = on.run()
     for name in on.scene.cables:
@@ -312,7 +326,7 @@ def swept(on: Asked) -> None:
 
 QUESTIONS: dict[str, Callable[[Asked], None]] = {question.__name__: question for question in (
     motion, fixed_steps, from_rest, from_relaxed, from_another_run, from_arrays, named_quantities, on_threads, many,
-    errors, saved, resumed, forces_in_sections, forces_at_a_slide, page_of_run, plots_of_run, film_of_run,
+    errors, saved, resumed, stepped, forces_in_sections, forces_at_a_slide, page_of_run, plots_of_run, film_of_run,
     files_for_paraview, picture_of_run, page_of_scene, plots, rest, forces_at_rest, page_of_rest, load_path,
     loads_in_steps, relaxed, adjusted, modes_at_rest, modes_as_drawn, text, schema, replaced, without_a_part,
     remeshed, chosen, swept)}

@@ -377,9 +377,12 @@ cdef extern from * nogil:
     void fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, const double *multipliers,
                           fu_joint_derivatives *out)
     int fu_start(fu_run *run)
-    int FU_ACCELERATION_JUMPS
+    int FU_ACCELERATION_JUMPS, FU_RATE_JUMPS
+    double FU_AT_ONCE
+    double fu_signal_at(const fu_signal *signal, double t, double *rate, double *second)
     int fu_pass_breakpoint(fu_run *run, const fu_breakpoint *breakpoint, int event)
     int fu_advance(fu_run *run, double seconds)
+    int fu_reach(fu_run *run, double time, double seconds)
     void fu_pause(fu_run *run)
     int fu_has_worked(const fu_run *run)
     long fu_save(const fu_run *run, char *bytes)

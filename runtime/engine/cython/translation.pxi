@@ -21,6 +21,8 @@ cdef class Translation(Arrays):
     cdef fu_breakpoint *breakpoints
     cdef fu_coupling **couplings  # in the order of the engine's sums
     cdef char *coupling_memory  # their structures, one behind the other
+    cdef size_t coupling_bytes, n_signals
+    cdef readonly bint needs_lapack
     cdef fu_event_function *event_functions
     cdef fu_model model
     cdef fu_run run
@@ -36,7 +38,9 @@ cdef class Translation(Arrays):
         self.motions = <fu_motion *>PyMem_Calloc(len(model.motions) + 1, sizeof(fu_motion))
         self.signals = <fu_signal *>PyMem_Calloc(len(model.signals) + 1, sizeof(fu_signal))
         self.couplings = <fu_coupling **>PyMem_Calloc(len(model.couplings) + 1, sizeof(fu_coupling *))
-        self.coupling_memory = <char *>PyMem_Calloc(1, 1 + sum([_type_of(c).size for c in model.couplings]))
+        self.n_signals = len(model.signals)
+        self.coupling_bytes = sum([_type_of(c).size for c in model.couplings])
+        self.coupling_memory = <char *>PyMem_Calloc(1, 1 + self.coupling_bytes)
         if not (self.cables and self.bodies and self.shapes and self.motions and self.signals and self.couplings
                 and self.coupling_memory):
             raise MemoryError
@@ -358,6 +362,7 @@ cdef class Translation(Arrays):
         system.fronts, system.chains = fronts, numbers + <int>layout.first["chains"]
         if fu_needs_lapack(system):
             _take_lapack()
+            self.needs_lapack = True
         system.half = numbers + <int>layout.first["half"]
         system.D, system.mirror = self._zeros(elimination.size + 1.0), self._zeros(n)
         factor = (width + 1.0) * (n + <double>FU_BAND_MORE(width) * chains)

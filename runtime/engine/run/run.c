@@ -58,17 +58,18 @@ static int pauses(fu_run *run)
     return fu_has_worked(run);
 }
 
-static int advance(fu_run *run, double seconds)
+/* Continues from row to row, or to one time alone, unless that is negative; returns a status. */
+static int advance(fu_run *run, double seconds, double alone)
 {
     const double until = fu_clock() + seconds;
     for (;;) {
         if (fu_take_deferred(run)) return FU_EVENT;
-        double target = run->record.n * run->output_step;
+        double target = alone < 0.0 ? run->record.n * run->output_step : alone;
         if (target > run->duration * (1.0 - FU_AT_ONCE)) target = run->duration;
         if (run->now.t >= target - FU_AT_ONCE * run->duration) {
             const int recorded = record(run, target);
             if (recorded) return recorded;
-            if (target == run->duration) return FU_DONE;
+            if (target == run->duration || alone >= 0.0) return FU_DONE;
             if (run->record.n == run->record.pause && pauses(run)) return FU_RUNNING;
             if (fu_clock() > until) return FU_RUNNING;
         } else {
@@ -83,12 +84,25 @@ static int advance(fu_run *run, double seconds)
     }
 }
 
-/* Continues for a number of seconds, or to the pause; returns a status, FU_RUNNING before the end. */
-int fu_advance(fu_run *run, double seconds)
+/* Advances with tiny numbers as zeros. */
+static int advance_without_tiny(fu_run *run, double seconds, double alone)
 {
     const unsigned before = fu_underflow();
     fu_set_underflow(before | FU_TINY_IS_ZERO);
-    const int status = advance(run, seconds);
+    const int status = advance(run, seconds, alone);
     fu_set_underflow(before);
     return status;
+}
+
+/* Continues for a number of seconds, or to the pause; returns a status, FU_RUNNING before the end. */
+int fu_advance(fu_run *run, double seconds)
+{
+    return advance_without_tiny(run, seconds, -1.0);
+}
+
+/* Continues for a number of seconds, or to a time after `now`, s, at most the duration, and records its row; returns a
+ * status: FU_DONE with the row, FU_RUNNING before. */
+int fu_reach(fu_run *run, double time, double seconds)
+{
+    return advance_without_tiny(run, seconds, time);
 }

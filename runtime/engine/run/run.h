@@ -28,6 +28,7 @@ int fu_step_towards(fu_run *run, double target);
 /* run/run.c: the time loop */
 int fu_has_worked(const fu_run *run);
 int fu_advance(fu_run *run, double seconds);
+int fu_reach(fu_run *run, double time, double seconds);
 
 /* run/checkpoint.c: all data on which later steps depend */
 void fu_pause(fu_run *run);

@@ -67,7 +67,7 @@ class Start(Protocol):
 
 
 @dataclass
-class Simulation:
+class Simulated:
     """The end of a run: the engine with its last rows, the status, the reason for the integrator, its spectral radius.
 
     Wall time: set_up_s until the engine starts, start_s from there to its first step, notes_s of the notes on results
@@ -90,7 +90,7 @@ class Simulation:
 
 
 def simulate(scene: SceneData, settings: RunSettings, on_progress: ProgressDisplay, initial: Start | None = None,
-             stream: RowStream | None = None, trials: TrialCache | None = None) -> Stages[Simulation]:
+             stream: RowStream | None = None, trials: TrialCache | None = None) -> Stages[Simulated]:
     """Integrate a checked scene, in stages; calls on_progress(time reached in s) about twenty times a second.
 
     initial: a state of this scene to start from; stream: takes the rows as they come, so that the engine keeps only the
@@ -99,13 +99,10 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: ProgressDispl
     clock = StageClock(of_thread=settings.threads == 1)
     begin = clock.wall
     with interruptible():
-        ready = _prepared(scene, settings, initial)
+        ready = prepared(scene, settings, initial)
     _check_size(ready.engine.row_bytes, settings, stream)
     blocks = row_blocks(int(np.ceil(settings.duration / settings.output_step)) + 1, ready.engine.row_bytes)
-    messages = implausible(scene) + ready.messages
-    if initial is not None:
-        messages += [f"state to start from: {message}" for message in initial.messages]
-    messages += _divided_step(settings)
+    messages = messages_before(scene, settings, ready, initial)
     with interruptible():
         choice = choose(settings, scene, ready.model, ready.engine, stream.integrator if stream else None)
     method, reason, rival = choice if trials is None else trials.of(scene, *choice)
@@ -114,18 +111,15 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: ProgressDispl
              method.name, reason, set_up)
     size = 0 if stream else ready.engine.row_bytes * math.ceil(settings.duration / settings.output_step)
     yield from clock.pause(size)
-    run = _begun(scene, settings, ready, method, blocks, on_progress, stream, clock, on_trial=rival is not None)
+    run = begun(scene, settings, ready, method, blocks, on_progress, stream, clock, on_trial=rival is not None)
 
-    def begun_with(other: Integrator, on_trial: bool) -> _Begun:
-        anew = _prepared(scene, settings, initial)
-        return _begun(scene, settings, anew, other, blocks, on_progress, stream, clock, on_trial)
+    def begun_with(other: Integrator, on_trial: bool) -> Begun:
+        anew = prepared(scene, settings, initial)
+        return begun(scene, settings, anew, other, blocks, on_progress, stream, clock, on_trial)
 
     yield from clock.pause(size)
-    run, status, method, why = _tried(scene, run, method, rival, begun_with, settings, blocks, stream, trials)
-    given = initial if isinstance(initial, InitialState) else ()  # a state of rest starts at the scene's velocities
-    messages += run.gaps + _warned([*_broken_velocities(run.model, run.change, given),
-                                    *velocity_jumps(scene.as_drawn, settings.duration, given),
-                                    *unresolved(scene.as_drawn, settings)])
+    run, status, method, why = tried(scene, run, method, rival, begun_with, settings, blocks, stream, trials)
+    messages += messages_at_start(scene, settings, run, initial)
     started = run.began - begin - set_up
     status = _ended(run, blocks.every, stream) if status in (None, "running") else status
     if status == "interrupted" and stream is not None and not stream.has_begun:  # write a checkpoint to resume from
@@ -136,22 +130,36 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: ProgressDispl
         yield from clock.pause(size)
     ended = clock.wall
     run.row_notes.see(run.engine)
-    messages += _controlled_alone(run.engine, settings)
+    messages += controlled_alone(run.engine, settings)
     if status not in FAILED_STATUSES:
-        messages += _warned(_result_notes(scene, settings, run, partial(_rows_again, scene, initial, method)))
+        messages += _warned(result_notes(scene, settings, run, partial(_rows_again, scene, initial, method)))
     noted = clock.wall - ended
     total = clock.wall - begin + (stream.elapsed if stream else 0.0)
     LOG.info("run %s after %.3g s", status.replace("_", " "), total)
     for message in messages:
         LOG.info("run: %s", message)
-    return Simulation(run.model, run.engine, run.event_handler, status, messages, reason + why,
+    return Simulated(run.model, run.engine, run.event_handler, status, messages, reason + why,
                       getattr(method, "spectral_radius", None), set_up, started, noted,
                       total, cpu)
 
 
-def _tried(scene: SceneData, run: _Begun, method: Integrator, rival: Rival | None,
-           begun_with: Callable[[Integrator, bool], _Begun], settings: RunSettings, blocks: RowBlocks,
-           stream: RowStream | None, trials: TrialCache | None) -> tuple[_Begun, str | None, Integrator, str]:
+def messages_before(scene: SceneData, settings: RunSettings, ready: Prepared, initial: Start | None) -> list[str]:
+    """Return the messages on a scene, its model, and the state to start from."""
+    of_state = [] if initial is None else [f"state to start from: {message}" for message in initial.messages]
+    return implausible(scene) + ready.messages + of_state + _divided_step(settings)
+
+
+def messages_at_start(scene: SceneData, settings: RunSettings, run: Begun, initial: Start | None) -> list[str]:
+    """Return the messages on the start of a run, after a warning for each."""
+    given = initial if isinstance(initial, InitialState) else ()  # a state of rest starts at the scene's velocities
+    return run.gaps + _warned([*_broken_velocities(run.model, run.change, given),
+                               *velocity_jumps(scene.as_drawn, settings.duration, given),
+                               *unresolved(scene.as_drawn, settings)])
+
+
+def tried(scene: SceneData, run: Begun, method: Integrator, rival: Rival | None,
+           begun_with: Callable[[Integrator, bool], Begun], settings: RunSettings, blocks: RowBlocks,
+           stream: RowStream | None, trials: TrialCache | None) -> tuple[Begun, str | None, Integrator, str]:
     """Return a run after the trials of its method and of its rivals, its status, its method, and the reasons for it.
 
     begun_with: returns the run anew with a method, and whether that is on trial.
@@ -174,12 +182,15 @@ def _tried(scene: SceneData, run: _Begun, method: Integrator, rival: Rival | Non
     return run, status, method, why
 
 
-def _result_notes(scene: SceneData, settings: RunSettings, run: _Begun,
-                  again: Callable[[RunSettings], dict[str, np.ndarray]]) -> list[str]:
-    """Return the notes on the results of a run; again: returns the rows of a second run with other settings."""
+def result_notes(scene: SceneData, settings: RunSettings, run: Begun,
+                 again: Callable[[RunSettings], dict[str, np.ndarray]] | None = None) -> list[str]:
+    """Return the notes on the results of a run; again: returns the rows of a second run with other settings, without
+    which the growth of slack motions is not measured.
+    """
     seen, engine = run.row_notes, run.engine
     unmeasured = [] if settings.estimate else [
-        *sensitive(engine, settings, seen[Sensitivity]), *grown(engine, settings, seen[SlackMotion], again),
+        *sensitive(engine, settings, seen[Sensitivity]),
+        *([] if again is None else grown(engine, settings, seen[SlackMotion], again)),
         *uncontrolled_errors(scene, engine, settings, seen[FastTurns], seen[NormalForces])]
     return [*notes(engine, settings), *beyond_linear_model(engine, settings), *trapped(scene, engine), *seen.notes(),
             *unmeasured]
@@ -201,7 +212,7 @@ def _warned(messages: list[str]) -> list[str]:
     return messages
 
 
-class _Prepared(NamedTuple):
+class Prepared(NamedTuple):
     """The model of a scene, an engine that is not started, the event_handler of its events, and messages."""
 
     model: Model
@@ -210,18 +221,18 @@ class _Prepared(NamedTuple):
     messages: list[str]
 
 
-def _prepared(scene: SceneData, settings: RunSettings, initial: Start | None) -> _Prepared:
-    """Return the model, engine and event_handler of a run."""
+def prepared(scene: SceneData, settings: RunSettings, initial: Start | None, made: type[Engine] = Engine) -> Prepared:
+    """Return the model, engine and event_handler of a run; made: the class of the engine."""
     model = build(scene)
     if initial is not None:
         initial.start(model, scene)
-    engine, event_handler = Engine(model), EventHandler(scene, model)
+    engine, event_handler = made(model), EventHandler(scene, model)
     engine.handle_events(event_handler)
-    return _Prepared(model, engine, event_handler,
+    return Prepared(model, engine, event_handler,
                      drop_redundant_rows(model, engine) + share_elements(engine, settings.threads))
 
 
-class _Begun(NamedTuple):
+class Begun(NamedTuple):
     """A run after its start: the status where it has ended, else None, messages on closed gaps, changes of velocities
     (n_dof,), the observers of its steps and rows, and the time of the clock in s.
     """
@@ -237,25 +248,28 @@ class _Begun(NamedTuple):
     began: float
 
 
-def _begun(scene: SceneData, settings: RunSettings, ready: _Prepared, method: Integrator, blocks: RowBlocks,
-           progress: ProgressDisplay, stream: RowStream | None, clock: StageClock, on_trial: bool = False) -> _Begun:
-    """Start a prepared run, with its stream; on_trial: it may begin anew with another method."""
+def begun(scene: SceneData, settings: RunSettings, ready: Prepared, method: Integrator, blocks: RowBlocks,
+           progress: ProgressDisplay, stream: RowStream | None, clock: StageClock, on_trial: bool = False,
+           capacity: int | None = None) -> Begun:
+    """Start a prepared run, with its stream; on_trial: it may begin anew with another method; capacity: of the engine
+    in rows, by default that of the stream's blocks, or all rows.
+    """
     model, engine, event_handler, _ = ready
     tol = tol_of(settings, scene, method)
     status, gaps, change = _start(scene, settings, model, engine, method, tol,
-                                  None if stream is None else blocks.capacity)
+                                  capacity if stream is None else blocks.capacity)
     changed = weakref.proxy(engine)  # which has the handler: without a cycle a run that ends is freed at once
     event_handler.change_signals = lambda restarts: changed.change_signals(
-        model, _breakpoints(model, settings, method, tol), restarts)
+        model, breakpoints_of(model, settings, method, tol), restarts)
     row_notes = RowNotes(scene, model, settings.step_taken or 0.0, settings.duration)
     if stream is not None and status is None:
         stream.start(model, engine, blocks, event_handler.happened, row_notes, on_trial)
         event_handler.switch("scene", first_times(event_handler.happened), restarts=False)
     observer = LongRun(model, engine, settings, event_handler, progress)
-    return _Begun(model, engine, event_handler, status, gaps, change, observer, row_notes, clock.wall)
+    return Begun(model, engine, event_handler, status, gaps, change, observer, row_notes, clock.wall)
 
 
-def _breakpoints(model: Model, settings: RunSettings, method: Integrator,
+def breakpoints_of(model: Model, settings: RunSettings, method: Integrator,
                  tol: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the instants at which steps of a run end, see `breakpoints`."""
     return breakpoints(model, settings.duration, tol, turns=settings.step is None,
@@ -278,7 +292,7 @@ def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine
         **_control(settings, scene, model),
         method=method,
         first_step=min(settings.output_step, 1e-3 * settings.duration),
-        breakpoints=_breakpoints(model, settings, method, tol),
+        breakpoints=breakpoints_of(model, settings, method, tol),
         capacity=capacity,
     )
     if status == "singular" and engine.self_locking >= 0:
@@ -308,7 +322,7 @@ def _control(settings: RunSettings, scene: SceneData, model: Model) -> dict[str,
     return {"absolute_tol": -1.0 if settings.absolute_tol is None else settings.absolute_tol, "controlled": weights}
 
 
-def _controlled_alone(engine: Engine, settings: RunSettings) -> list[str]:
+def controlled_alone(engine: Engine, settings: RunSettings) -> list[str]:
     """Return a message on the quantities that the steps control, where the user named some."""
     if settings.quantities is None:
         return []
@@ -327,7 +341,7 @@ def _divided_step(settings: RunSettings) -> list[str]:
     return [f"step {settings.step:.6g} s was made {step:.6g} s, so that steps end on output times"]
 
 
-def _ended(run: _Begun, every: int, stream: RowStream | None) -> str:
+def _ended(run: Begun, every: int, stream: RowStream | None) -> str:
     """Return the status where a run ends; a drum that has run empty may stop it as an event does."""
     status = run.engine.advance(run.observer, every, stream, shown=run.observer.is_shown)
     if status == "rope_left" and run.engine.left[1] == EMPTY and run.event_handler.stops_empty(run.engine.left[0]):

@@ -1,0 +1,135 @@
+# An engine that steps to times given one after the other.
+
+cdef enum:
+    MEASURED, TAKEN, PUT_BACK
+
+
+cdef size_t _copied(void *memory, size_t size, char *image, int what) noexcept:
+    """Copy memory to its place in an image, or back, or neither; return its size in bytes."""
+    if what == TAKEN:
+        memcpy(image, memory, size)
+    elif what == PUT_BACK:
+        memcpy(memory, image, size)
+    return size
+
+
+cdef class SteppedEngine(Engine):
+    """One run of a model whose end, loads and drives are not known at its start."""
+
+    cdef int last  # place of the last row in the arrays
+
+    def reach(self, double time):
+        """Step to a time in s, at most the duration, and record its row; return None, or the status of a run that ends
+        before. Raises KeyboardInterrupt after a step.
+        """
+        cdef int status = FU_RUNNING
+        run = &self.run
+        while status == FU_RUNNING:
+            with nogil:
+                status = fu_reach(run, time, 0.05)
+            if self.error is not None:
+                raise self.error
+            if status == FU_EVENT:
+                status = self._after_event()
+                if status:
+                    break
+            if status == FU_RUNNING:
+                PyErr_CheckSignals()
+                check_interrupted()
+        return None if status == FU_DONE else STATUS[status]
+
+    @property
+    def n_rows_kept(self):
+        """Number of output rows in the arrays."""
+        return self.run.record.n - self.run.record.first
+
+    def pause(self):
+        """Drop what no checkpoint has, as a run does at its pauses."""
+        fu_pause(&self.run)
+
+    def last_row(self):
+        """Return copies of the recorded arrays, of the last row alone."""
+        self._note_last()
+        return {name: array[self.last:self.last + 1].copy() for name, array in self.arrays.items()}
+
+    def take_rows(self):
+        """Release the rows in the arrays, but the last one, until there is a new one."""
+        self._note_last()
+        Engine.take_rows(self)
+
+    cdef _note_last(self):
+        if self.run.record.n > self.run.record.first:
+            self.last = self.run.record.n - self.run.record.first - 1
+
+    def extend(self, double duration, breakpoints):
+        """Take a later end, in s, with the breakpoints until there. Raises ArithmeticError where the equations are
+        singular at one that has been the end.
+        """
+        cdef int k
+        run = &self.run
+        run.duration = duration
+        self._breakpoints(*breakpoints)
+        for k in range(run.n_breakpoints):
+            if fabs(run.breakpoints[k].t - run.now.t) <= FU_AT_ONCE * duration:
+                self._pass(run.breakpoints[k].jumps)
+
+    def set_signal(self, int number, double since, coefficients):
+        """Set a signal of one piece to a polynomial of the time since an instant in s, (n,) ascending powers."""
+        cdef fu_signal *g = &self.signals[number]
+        cdef int k
+        if g.n != 1 or g.amplitude != 0.0:
+            raise ValueError(f"signal {number} has more than one piece")
+        breaks, own = <double *>g.breaks, <double *>g.coefficients
+        breaks[0], breaks[1] = since, since + 1.0
+        for k in range(FU_SIGNAL_TERMS):
+            own[k] = coefficients[k] if k < len(coefficients) else 0.0
+
+    def signal_at(self, int number):
+        """Return the value of a signal and its rate at the time reached."""
+        cdef double rate, second
+        value = fu_signal_at(&self.signals[number], self.run.now.t, &rate, &second)
+        return value, rate
+
+    def jump(self, bint of_rates):
+        """Continue from a jump of forces, or of_rates of driven motions, at the time reached. Raises ArithmeticError
+        where the equations are singular then.
+        """
+        self._pass(FU_RATE_JUMPS if of_rates else FU_ACCELERATION_JUMPS)
+
+    cdef _pass(self, int jumps):
+        cdef fu_breakpoint now
+        now.t, now.jumps = self.run.now.t, jumps
+        if fu_pass_breakpoint(&self.run, &now, 0):
+            raise ArithmeticError("the equations are singular")
+
+    cdef size_t _copy(self, char *image, int what, size_t chunks):
+        """Copy all that changes in a run to an image, or back; return its size in bytes. chunks: their number then."""
+        cdef size_t k, size = 0
+        run, m = &self.run, &self.model
+        size += _copied(run, sizeof(fu_run), image + size, what)
+        size += _copied(m, sizeof(fu_model), image + size, what)
+        size += _copied(&self.linear, sizeof(fu_linear_model), image + size, what)
+        size += _copied(self.signals, self.n_signals * sizeof(fu_signal), image + size, what)
+        size += _copied(self.coupling_memory, self.coupling_bytes, image + size, what)
+        size += _copied(self.event_functions, run.n_event_functions * sizeof(fu_event_function), image + size, what)
+        for k in range(chunks):
+            size += _copied(self.chunks[k], self.sizes[k], image + size, what)
+        return size
+
+    def image(self):
+        """Return all that changes in a run: bytes, the breakpoints, and the last row; for this engine alone."""
+        cdef size_t size = self._copy(NULL, MEASURED, self.n_chunks)
+        cdef bytearray taken = bytearray(size)
+        self._copy(taken, TAKEN, self.n_chunks)
+        points = [(self.run.breakpoints[k].t, self.run.breakpoints[k].jumps) for k in range(self.run.n_breakpoints)]
+        return taken, self.n_chunks, points, self.last_row()
+
+    def take_image(self, image):
+        """Return to the state of an image of this engine, with the same bits."""
+        cdef bytearray taken = image[0]
+        self._copy(taken, PUT_BACK, image[1])
+        self.run.breakpoints = NULL  # of that time
+        self._breakpoints(*(zip(*image[2]) if image[2] else ((), ())))
+        self.run.record.first, self.last = self.run.record.n, 0
+        for name, row in image[3].items():
+            self.arrays[name][:1] = row
