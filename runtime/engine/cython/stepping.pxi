@@ -24,6 +24,8 @@ cdef class SteppedEngine(Engine):
         """
         cdef int status = FU_RUNNING
         run = &self.run
+        if run.record.n - run.record.first + 2 > self.arrays["time"].shape[0]:
+            raise RuntimeError("the arrays are full of rows; call take_rows first")
         while status == FU_RUNNING:
             with nogil:
                 status = fu_reach(run, time, 0.05)

@@ -32,8 +32,9 @@ FUNCTIONS = ("load_scene", "load_run", "combine", "run_many", "sweep", "sweep_co
              "tapered", "read_moordyn")
 CLASSES: dict[str, tuple[type, ...]] = {
     "Scene": (funicular.Scene, DescribedScene), "Run": (Run,), "Equilibrium": (Equilibrium, RestState),
-    "Modes": (funicular.Modes,), "Choice": (funicular.Choice,), "Pictures": (Viewable,)}
-"""Titles of sections, and the classes whose methods they list; all but the last three have those of `Viewable`."""
+    "Modes": (funicular.Modes,), "Simulation": (funicular.Simulation,), "Choice": (funicular.Choice,),
+    "Pictures": (Viewable,)}
+"""Titles of sections, and the classes whose methods they list; the first four have those of `Viewable`, too."""
 
 OTHERS = (InitialState, State, Stability, Relaxation, Adjustment, EnergyBalance, ErrorEstimate, SweepCost, Uniform,
           LogUniform)
