@@ -26,8 +26,8 @@ PAGES = {"runtime/README.md": "reference.md", "derive/README.md": "derivation.md
 """Pages beside the code, and their names in the site."""
 
 ORDER = ("first_scene", "choose_an_element", "choose_a_model", "cable_car", "crane", "zip_line", "pantograph",
-         "cable_robot", "controller", "sheaves", "slackline", "slack_and_taut", "your_own_rope_law", "droppers", "contact",
-         "wind_and_water", "modes", "results", "sweep", "fit_and_rank", "long_runs", "your_own_element",
+         "cable_robot", "controller", "sheaves", "slackline", "slack_and_taut", "your_own_rope_law", "droppers",
+         "contact", "wind_and_water", "modes", "results", "sweep", "fit_and_rank", "long_runs", "your_own_element",
          "verify_and_benchmark", "c_kernels")
 """Guides in the order of the gallery: first steps, examples, special subjects."""
 
