@@ -213,23 +213,30 @@ def _warned(messages: list[str]) -> list[str]:
 
 
 class Prepared(NamedTuple):
-    """The model of a scene, an engine that is not started, the event_handler of its events, and messages."""
+    """The model of a scene, an engine that is not started, the event_handler of its events, the observers of its rows,
+    and messages.
+    """
 
     model: Model
     engine: Engine
     event_handler: EventHandler
+    row_notes: RowNotes
     messages: list[str]
 
 
 def prepared(scene: SceneData, settings: RunSettings, initial: Start | None, made: type[Engine] = Engine) -> Prepared:
-    """Return the model, engine and event_handler of a run; made: the class of the engine."""
+    """Return the model, engine, event_handler and row notes of a run: all that does not belong to its integration.
+
+    made: the class of the engine.
+    """
     model = build(scene)
     if initial is not None:
         initial.start(model, scene)
     engine, event_handler = made(model), EventHandler(scene, model)
     engine.handle_events(event_handler)
-    return Prepared(model, engine, event_handler,
-                     drop_redundant_rows(model, engine) + share_elements(engine, settings.threads))
+    messages = drop_redundant_rows(model, engine) + share_elements(engine, settings.threads)
+    row_notes = RowNotes(scene, model, settings.step_taken or 0.0, settings.duration)
+    return Prepared(model, engine, event_handler, row_notes, messages)
 
 
 class Begun(NamedTuple):
@@ -254,14 +261,13 @@ def begun(scene: SceneData, settings: RunSettings, ready: Prepared, method: Inte
     """Start a prepared run, with its stream; on_trial: it may begin anew with another method; capacity: of the engine
     in rows, by default that of the stream's blocks, or all rows.
     """
-    model, engine, event_handler, _ = ready
+    model, engine, event_handler, row_notes, _ = ready
     tol = tol_of(settings, scene, method)
     status, gaps, change = _start(scene, settings, model, engine, method, tol,
                                   capacity if stream is None else blocks.capacity)
     changed = weakref.proxy(engine)  # which has the handler: without a cycle a run that ends is freed at once
     event_handler.change_signals = lambda restarts: changed.change_signals(
         model, breakpoints_of(model, settings, method, tol), restarts)
-    row_notes = RowNotes(scene, model, settings.step_taken or 0.0, settings.duration)
     if stream is not None and status is None:
         stream.start(model, engine, blocks, event_handler.happened, row_notes, on_trial)
         event_handler.switch("scene", first_times(event_handler.happened), restarts=False)
