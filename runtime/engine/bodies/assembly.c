@@ -113,6 +113,22 @@ static void elastic_tangents(const fu_cable *cable, const double *q, int first, 
                                     K + k * size);
 }
 
+/* to[i] += from[i] for n numbers */
+FU_INLINE void add_numbers(int n, const double *from, double *to)
+{
+    int i = 0;
+    for (; i + FU_SIMD_WIDTH <= n; i += FU_SIMD_WIDTH) *(fu_simd_block *)(to + i) += *(const fu_simd_block *)(from + i);
+    for (; i < n; ++i) to[i] += from[i];
+}
+
+/* x[i] *= factor for n numbers */
+FU_INLINE void scale_numbers(int n, double factor, double *x)
+{
+    int i = 0;
+    for (; i + FU_SIMD_WIDTH <= n; i += FU_SIMD_WIDTH) *(fu_simd_block *)(x + i) *= factor;
+    for (; i < n; ++i) x[i] *= factor;
+}
+
 /* Adds the contributions of n elements of a part from the k-th on. */
 static void add_group(const sum *job, int k, int n, const double *from, double *first)
 {
@@ -120,11 +136,11 @@ static void add_group(const sum *job, int k, int n, const double *from, double *
     double *at = job->f + fu_element_entry(cable, k);
     const int left = first ? cable->per_node : 0;
     for (int i = 0; i < left; ++i) first[i] = from[i];
-    for (int i = left; i < cable->coordinates; ++i) at[i] += from[i];
+    add_numbers(cable->coordinates - left, from + left, at + left);
     for (int j = 1; j < n; ++j) {
         at += cable->per_node;
         from += cable->coordinates;
-        for (int i = 0; i < cable->coordinates; ++i) at[i] += from[i];
+        add_numbers(cable->coordinates, from, at);
     }
 }
 
@@ -231,9 +247,11 @@ static void add_mass(const fu_cable *cable, int k, double mass, double *K)
 {
     const double *m = fu_element_mass(cable, k);
     const int n = cable->coordinates, dim = cable->kernel->dim, vectors = n / dim;
-    for (int j = 0; j < vectors; ++j)
-        for (int i = 0; i < vectors; ++i)
-            for (int d = 0; d < dim; ++d) K[(j * dim + d) * n + i * dim + d] += mass * m[j * vectors + i];
+    for (int j = 0; j < vectors; ++j, K += dim * n)
+        for (int i = 0; i < vectors; ++i) {
+            const double of = mass * m[j * vectors + i];
+            for (int d = 0; d < dim; ++d) K[i * dim + d * (n + 1)] += of;
+        }
 }
 
 /* K[m] += scale[m] row[m] for n numbers */
@@ -334,7 +352,7 @@ static void complete(const matrix *job, int k, double *K)
             else cable->law->damping_tangent(of.l[0], of.e, of.v, of.A, of.tau, job->rate, Q);
             for (int i = 0; i < size; ++i) K[i] += Q[i];
         }
-        for (int i = 0; i < size; ++i) K[i] *= job->stiffness;
+        scale_numbers(size, job->stiffness, K);
     }
     add_mass(cable, k, job->inertia + job->stiffness * job->rate * fu_piece_of(cable, k)->mass_damping, K);
 }

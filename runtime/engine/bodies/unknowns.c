@@ -1,10 +1,14 @@
 /* Dofs and unknowns: dofs = T unknowns, where each row of T is empty, a single one, or a combination. */
+#include "base/simd.h"
 #include "bodies/model.h"
 #include "bodies/unknowns.h"
 
+#include <limits.h>
 #include <math.h>
 
-enum { MAXIMA = 4 }; /* of dofs, computed side by side, which are independent for the processor */
+/* The bits of a block, and those of magnitudes among them. */
+typedef long long bits __attribute__((vector_size(sizeof(fu_simd_block)), aligned(sizeof(double)), may_alias));
+static const bits MAGNITUDE = {LLONG_MAX, LLONG_MAX, LLONG_MAX, LLONG_MAX};
 
 /* A row of T: the places of n unknowns, and their values. */
 typedef struct {
@@ -165,11 +169,13 @@ void fu_add_element_matrix(const fu_model *model, int first, int n, const double
             for (int i = 0; i < n; ++i) column[i] += K[i * n + j];
         return;
     }
-    for (int j = 0; j < n; ++j) {
-        if (unknown[j] < 0) continue;
-        double *column = system->K + (long)unknown[j] * rows + diagonal - unknown[j];
-        for (int i = 0; i < n; ++i)
-            if (unknown[i] >= 0) column[unknown[i]] += K[i * n + j];
+    int moving[FU_MAX_COORDINATES], n_moving = 0; /* coordinates that are not fixed */
+    for (int j = 0; j < n; ++j)
+        if (unknown[j] >= 0) moving[n_moving++] = j;
+    for (int k = 0; k < n_moving; ++k) {
+        const double *of = K + moving[k];
+        double *column = system->K + (long)unknown[moving[k]] * rows + diagonal - unknown[moving[k]];
+        for (int m = 0; m < n_moving; ++m) column[unknown[moving[m]]] += of[moving[m] * n];
     }
 }
 
@@ -301,14 +307,16 @@ static void size_part(const void *what, int part, int parts)
     const measure *job = what;
     const double *weight = job->weight, *dofs = job->dofs;
     const fu_range range = fu_part_of(job->n, FU_DOFS_APART, part, parts);
-    double largest[MAXIMA] = {0.0}, check = 0.0; /* a maximum does not detect a NaN */
+    fu_simd_block largest = {0.0}, checks = {0.0}; /* a maximum does not detect a NaN */
     int i = range.first;
-    for (; i + MAXIMA <= range.end; i += MAXIMA)
-        for (int k = 0; k < MAXIMA; ++k) {
-            const double size = fabs(dofs[i + k]) * weight[i + k];
-            largest[k] = size > largest[k] ? size : largest[k];
-            check += 0.0 * size;
-        }
+    for (; i + FU_SIMD_WIDTH <= range.end; i += FU_SIMD_WIDTH) {
+        const fu_simd_block of = *(const fu_simd_block *)(dofs + i);
+        const fu_simd_block size = (fu_simd_block)((bits)of & MAGNITUDE) * *(const fu_simd_block *)(weight + i);
+        const bits larger = (bits)(size > largest);
+        largest = (fu_simd_block)((larger & (bits)size) | (~larger & (bits)largest));
+        checks += 0.0 * size;
+    }
+    double check = (checks[0] + checks[1]) + (checks[2] + checks[3]);
     for (; i < range.end; ++i) {
         const double size = fabs(dofs[i]) * weight[i];
         largest[0] = size > largest[0] ? size : largest[0];

@@ -77,7 +77,15 @@ FU_INLINE void take_steps(const fu_run *run, double h, int first, int end)
     const double rate_now = h * (1.0 - g->gamma), rate_next = h * g->gamma;
     const double *v = now->v, *a = now->a, *before = now->acceleration, *change = next->a;
     double *restrict psi = run->psi, *restrict velocity = next->v, *restrict acceleration = next->acceleration;
-    for (int i = first; i < end; ++i) {
+    int i = first;
+    for (; i + FU_SIMD_WIDTH <= end; i += FU_SIMD_WIDTH) {
+        const fu_simd_block vi = *(const fu_simd_block *)(v + i), ai = *(const fu_simd_block *)(a + i),
+                            ci = *(const fu_simd_block *)(change + i), bi = *(const fu_simd_block *)(before + i);
+        *(fu_simd_block *)(psi + i) = h * vi + by_now * ai + by_next * ci;
+        *(fu_simd_block *)(velocity + i) = vi + rate_now * ai + rate_next * ci;
+        *(fu_simd_block *)(acceleration + i) = slope * ci + slope_now * ai - share_before * bi;
+    }
+    for (; i < end; ++i) {
         psi[i] = h * v[i] + by_now * a[i] + by_next * change[i];
         velocity[i] = v[i] + rate_now * a[i] + rate_next * change[i];
         acceleration[i] = slope * change[i] + slope_now * a[i] - share_before * before[i];

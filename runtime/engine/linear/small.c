@@ -85,7 +85,10 @@ FU_INLINE void solve(int n, const double *A, const int *pivot, double *x)
 {
     for (int j = 0; j < n; ++j)
         if (pivot[j] != j) exchange(x + j, x + pivot[j]);
-    eliminated(A, n, 0, n, x);
+    int zeros = 0; /* first ones of the right side, such as those of the band for gaps of constraints */
+    while (zeros + 4 <= n && x[zeros] == 0.0 && x[zeros + 1] == 0.0 && x[zeros + 2] == 0.0 && x[zeros + 3] == 0.0)
+        zeros += 4;
+    eliminated(A, n, zeros, n, x);
     int k = n;
     for (; k >= 4; k -= 4) substitute_four(A, n, k, x);
     for (; k > 0; --k) substitute_one(A, n, k, x);

@@ -1,5 +1,6 @@
 /* Sums of vectors that threads share. They cost little, but one thread alone would move half of each vector out of the
  * cache of the other. */
+#include "base/simd.h"
 #include "linear/linear.h"
 
 /* x = factor (y - z), or factor y if z is null; `adds`: adds to x. */
@@ -10,18 +11,27 @@ typedef struct {
     double *x;
 } sum;
 
+#define BLOCK(vector, i) (*(fu_simd_block *)((vector) + (i)))
+#define BLOCK_OF(vector, i) (*(const fu_simd_block *)((vector) + (i)))
+
 static void sum_part(const void *what, int part, int parts)
 {
     const sum *job = what;
     const fu_range of = fu_part_of(job->n, FU_DOFS_APART, part, parts);
     const double factor = job->factor, *y = job->y, *z = job->z;
     double *x = job->x;
-    if (job->adds)
-        for (int i = of.first; i < of.end; ++i) x[i] += factor * y[i];
-    else if (z)
-        for (int i = of.first; i < of.end; ++i) x[i] = factor * (y[i] - z[i]);
-    else
-        for (int i = of.first; i < of.end; ++i) x[i] = factor * y[i];
+    int i = of.first;
+    if (job->adds) {
+        for (; i + FU_SIMD_WIDTH <= of.end; i += FU_SIMD_WIDTH) BLOCK(x, i) += factor * BLOCK_OF(y, i);
+        for (; i < of.end; ++i) x[i] += factor * y[i];
+    } else if (z) {
+        for (; i + FU_SIMD_WIDTH <= of.end; i += FU_SIMD_WIDTH)
+            BLOCK(x, i) = factor * (BLOCK_OF(y, i) - BLOCK_OF(z, i));
+        for (; i < of.end; ++i) x[i] = factor * (y[i] - z[i]);
+    } else {
+        for (; i + FU_SIMD_WIDTH <= of.end; i += FU_SIMD_WIDTH) BLOCK(x, i) = factor * BLOCK_OF(y, i);
+        for (; i < of.end; ++i) x[i] = factor * y[i];
+    }
 }
 
 /* Computes x = factor y. */
