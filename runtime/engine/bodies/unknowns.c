@@ -301,15 +301,11 @@ typedef struct {
     double *largest;
 } measure;
 
-/* Computes the size of a part of the dofs. */
-static void size_part(const void *what, int part, int parts)
+FU_INLINE void measure_range(const double *weight, const double *dofs, int first, int end, double *size_of)
 {
-    const measure *job = what;
-    const double *weight = job->weight, *dofs = job->dofs;
-    const fu_range range = fu_part_of(job->n, FU_DOFS_APART, part, parts);
     fu_simd_block largest = {0.0}, checks = {0.0}; /* a maximum does not detect a NaN */
-    int i = range.first;
-    for (; i + FU_SIMD_WIDTH <= range.end; i += FU_SIMD_WIDTH) {
+    int i = first;
+    for (; i + FU_SIMD_WIDTH <= end; i += FU_SIMD_WIDTH) {
         const fu_simd_block of = *(const fu_simd_block *)(dofs + i);
         const fu_simd_block size = (fu_simd_block)((bits)of & MAGNITUDE) * *(const fu_simd_block *)(weight + i);
         const bits larger = (bits)(size > largest);
@@ -317,12 +313,26 @@ static void size_part(const void *what, int part, int parts)
         checks += 0.0 * size;
     }
     double check = (checks[0] + checks[1]) + (checks[2] + checks[3]);
-    for (; i < range.end; ++i) {
+    for (; i < end; ++i) {
         const double size = fabs(dofs[i]) * weight[i];
         largest[0] = size > largest[0] ? size : largest[0];
         check += 0.0 * size;
     }
-    job->largest[part] = check + fmax(fmax(largest[0], largest[1]), fmax(largest[2], largest[3]));
+    *size_of = check + fmax(fmax(largest[0], largest[1]), fmax(largest[2], largest[3]));
+}
+
+/* Computes the size of the dofs [first, end). */
+static void measure_dofs(const double *weight, const double *dofs, int first, int end, double *size_of);
+FU_SIMD_FUNCTION(measure_dofs, measure_range,
+                 (const double *weight, const double *dofs, int first, int end, double *size_of),
+                 (weight, dofs, first, end, size_of))
+
+/* Computes the size of a part of the dofs. */
+static void size_part(const void *what, int part, int parts)
+{
+    const measure *job = what;
+    const fu_range range = fu_part_of(job->n, FU_DOFS_APART, part, parts);
+    measure_dofs(job->weight, job->dofs, range.first, range.end, job->largest + part);
 }
 
 /* Returns the largest displacement of points by the weighted dofs, as a length, m; NaN if any is. */

@@ -14,24 +14,32 @@ typedef struct {
 #define BLOCK(vector, i) (*(fu_simd_block *)((vector) + (i)))
 #define BLOCK_OF(vector, i) (*(const fu_simd_block *)((vector) + (i)))
 
+FU_INLINE void sum_range(const sum *job, int first, int end)
+{
+    const double factor = job->factor, *y = job->y, *z = job->z;
+    double *x = job->x;
+    int i = first;
+    if (job->adds) {
+        for (; i + FU_SIMD_WIDTH <= end; i += FU_SIMD_WIDTH) BLOCK(x, i) += factor * BLOCK_OF(y, i);
+        for (; i < end; ++i) x[i] += factor * y[i];
+    } else if (z) {
+        for (; i + FU_SIMD_WIDTH <= end; i += FU_SIMD_WIDTH) BLOCK(x, i) = factor * (BLOCK_OF(y, i) - BLOCK_OF(z, i));
+        for (; i < end; ++i) x[i] = factor * (y[i] - z[i]);
+    } else {
+        for (; i + FU_SIMD_WIDTH <= end; i += FU_SIMD_WIDTH) BLOCK(x, i) = factor * BLOCK_OF(y, i);
+        for (; i < end; ++i) x[i] = factor * y[i];
+    }
+}
+
+/* Computes the numbers [first, end) of x. */
+static void sums(const sum *job, int first, int end);
+FU_SIMD_FUNCTION(sums, sum_range, (const sum *job, int first, int end), (job, first, end))
+
 static void sum_part(const void *what, int part, int parts)
 {
     const sum *job = what;
     const fu_range of = fu_part_of(job->n, FU_DOFS_APART, part, parts);
-    const double factor = job->factor, *y = job->y, *z = job->z;
-    double *x = job->x;
-    int i = of.first;
-    if (job->adds) {
-        for (; i + FU_SIMD_WIDTH <= of.end; i += FU_SIMD_WIDTH) BLOCK(x, i) += factor * BLOCK_OF(y, i);
-        for (; i < of.end; ++i) x[i] += factor * y[i];
-    } else if (z) {
-        for (; i + FU_SIMD_WIDTH <= of.end; i += FU_SIMD_WIDTH)
-            BLOCK(x, i) = factor * (BLOCK_OF(y, i) - BLOCK_OF(z, i));
-        for (; i < of.end; ++i) x[i] = factor * (y[i] - z[i]);
-    } else {
-        for (; i + FU_SIMD_WIDTH <= of.end; i += FU_SIMD_WIDTH) BLOCK(x, i) = factor * BLOCK_OF(y, i);
-        for (; i < of.end; ++i) x[i] = factor * y[i];
-    }
+    sums(job, of.first, of.end);
 }
 
 /* Computes x = factor y. */
