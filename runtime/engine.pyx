@@ -17,7 +17,7 @@ from cpython.pycapsule cimport PyCapsule_GetName, PyCapsule_GetPointer
 from libc.float cimport DBL_MIN
 from libc.math cimport INFINITY, M_PI_2, acos, asin, fabs, fmax, fmin, sin, sqrt
 from libc.stdlib cimport calloc, free, realloc
-from libc.string cimport memcpy
+from libc.string cimport memcpy, memset
 
 from funicular.base.interruptions import check_interrupted
 from funicular.base.operating_system import machine_memory

@@ -245,3 +245,10 @@ class ModeSettings(Part):
     kind = "modes"
     n: Count
     wraps: Wraps = "slip"
+
+
+class LinearSettings(Part):
+    """The number of modes that a linear model keeps, all by default."""
+
+    kind = "linearise"
+    reduce: Count | None = None

@@ -20,7 +20,7 @@ from ..errors import (
     near,
 )
 from ..parts.in_plane import in_plane
-from ..parts.settings import EquilibriumSettings, ModeSettings, RelaxationSettings, RunSettings, overridden
+from ..parts.settings import EquilibriumSettings, LinearSettings, ModeSettings, RelaxationSettings, RunSettings, overridden
 from ..parts.validation import show, shown
 from ..results.run import Run, raise_where_stopped
 from ..results.viewable import Viewable
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
     from ..choice.choice import Choice
     from ..results.equilibrium import Equilibrium
+    from ..results.linear_model import LinearModel
     from ..results.modes import Modes
     from ..results.simulation import Simulation
     from ..results.streaming import Stream
@@ -429,6 +430,37 @@ class Scene(Viewable, DescribedScene):
         with uninterrupted(), one_blas_thread, enough_memory(), interruptible():
             return Modes.of(modes(in_plane(self), settings.n, state, as_drawn, settings.wraps == "stick"), self, state)
 
+    def linearise(self, inputs: Sequence[str] = (), outputs: Sequence[str] = (), about: Equilibrium | None = None, *,
+                  reduce: int | None = None) -> LinearModel:
+        """Return the linear model x' = A x + B u, y = C x + D u of small motions about a state of rest, with damping.
+
+        inputs: paths as in a sweep: "gravity.x", values and scales of loads ("push.value.x"), displacements and
+        rotations of motions, drives of joints and slides ("winch.velocity"), velocities of fluids. outputs: names of
+        results, of a vector or one of its entries ("A.position.x", "hinge.force", "wire.position.10.y"), and of the
+        states of joints and slides ("hinge.angle"). u and y are changes from the state. about: a state of
+        `equilibrium`; by default the scene as drawn if forces balance there, else its equilibrium. reduce: the number
+        of modes that are kept, the lowest; the others respond to inputs without delay.
+
+        States are joint angles, displacements and s of slides where these determine the motion, else modal coordinates,
+        and their rates; constraints are eliminated. Friction that sticks holds its coordinate. Raises SceneError, with
+        the residual force of a state that is not at rest, at a kink of forces, for inputs that are none, and for outputs
+        that depend on rates of an input; UnknownResultError for unknown outputs.
+        """
+        names = [_names("linearise", kind, given) for kind, given in (("inputs", inputs), ("outputs", outputs))]
+        settings = LinearSettings(reduce=reduce)
+        state = None if about is None else _equilibrium_state(self, about)
+        self.check()
+
+        from ..results.linear_model import LinearModel  # brings SciPy
+        from ..solve.linearisation.linearise import drawn_in_balance, linearise
+
+        with uninterrupted(), one_blas_thread, enough_memory(), interruptible():
+            at_rest = state is not None or drawn_in_balance(self)
+        state = state if at_rest else self.equilibrium()
+        with uninterrupted(), one_blas_thread, enough_memory(), interruptible():
+            found = linearise(self, *names, state, settings.reduce)
+        return LinearModel.of(found, self, state)
+
     def animation(self, title: str | None = None) -> Animation:
         """Return pictures of the scene as drawn; see `Viewable.animation`."""
         from ..results.animation.clips import of_scene  # brings SciPy
@@ -453,6 +485,14 @@ def _refuse_unknown(method: str, unknown: Iterable[str], known: Collection[str])
         meant = SYNONYMS.get(name)
         raise SceneError(method, f'"{name}" is not known here',
                          f'did you mean "{meant}"?' if meant in known else near(name, known))
+
+
+def _names(method: str, kind: str, given: Any) -> list[str]:
+    """Return names given as texts. Raises SceneError for what are none."""
+    if isinstance(given, str) or not isinstance(given, Sequence) or not all(isinstance(each, str) for each in given):
+        raise SceneError(method, f"{kind} must be a list of names, got {shown(given)}",
+                         f'write such as {kind}=["{given}"]' if isinstance(given, str) else None)
+    return list(given)
 
 
 def _check_resume(resume: bool, settings: RunSettings) -> None:

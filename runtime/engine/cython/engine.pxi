@@ -273,6 +273,9 @@ cdef extern from * nogil:
     void fu_record_attach(fu_record *record, int k, double *data)
     ctypedef struct fu_weights:
         double inertia, rate, stiffness
+    ctypedef struct fu_equations:
+        const fu_state *now, *next
+        fu_weights weights
     ctypedef struct fu_sparse:
         int rows
         const int *row, *start, *column
@@ -346,6 +349,7 @@ cdef extern from * nogil:
     void fu_system_solve(const fu_system *system, const fu_lapack *lapack, double *x)
     void fu_static_move(fu_run *run, const double *change)
     void fu_static_residual(fu_run *run)
+    void fu_residual(fu_run *run, const fu_equations *at)
     void fu_matrix_of_weights(fu_run *run, fu_weights weights)
     void fu_spread(const fu_model *model, const double *x, double *dofs)
     void fu_prescribe(const fu_model *model, fu_state *state)

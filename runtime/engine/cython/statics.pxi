@@ -205,6 +205,32 @@ cdef class Statics(Translation):
         fu_static_residual(&self.run)
         return -np.asarray(<double[:total]>self.run.rhs) if total else np.zeros(0)
 
+    def set_rates(self, v, acceleration):
+        """Set velocities and accelerations (n_dof,) of the static state, which `set_state` sets to zero."""
+        self._view(&self.run.next, "v")[:] = v
+        self._view(&self.run.next, "acceleration")[:] = acceleration
+
+    def forces_in_motion(self):
+        """Return (n_dof,): forces of the static state with its rates: inertial and internal less external ones."""
+        cdef fu_equations at
+        memset(&at, 0, sizeof(at))
+        at.now, at.next = &self.run.now, &self.run.next
+        at.weights.inertia, at.weights.rate, at.weights.stiffness = 1.0, 0.0, 1.0
+        fu_residual(&self.run, &at)
+        return self.reaction()
+
+    def outputs_in_motion(self, str kind):
+        """Return `static_outputs` of the static state with its rates."""
+        numbers = self._of(kind)
+        out = np.zeros((len(numbers), fu_n_outputs(fu_coupling_type_of(kind.encode()))))
+        cdef double[:, ::1] view = out
+        cdef double[::1] acceleration = self._view(&self.run.next, "acceleration")
+        cdef int k, number
+        for k, number in enumerate(numbers if self.model.n_dof else []):
+            c = self.couplings[number]
+            c.type.outputs(&self.model, c, &self.run.next, &acceleration[0], NULL, &view[k, 0])
+        return out
+
     def external_forces(self, int first, int stop):
         """Return (stop - first, n_dof): contributions of loads first..stop to the residual in the static state."""
         out = np.zeros((stop - first, self.model.n_dof))

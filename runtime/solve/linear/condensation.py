@@ -33,7 +33,7 @@ def condensed(full: Any, model: Model) -> tuple[Any, Any]:
     full = full.tocsr() if is_sparse else full
     K = without_forces(full, kept, model)
     of_contacts = {n + k for contact in model.hard_contacts for k in contact.force_unknowns}
-    C = _independent(full[np.array(forces, dtype=int)][:, kept],
+    C = independent(full[np.array(forces, dtype=int)][:, kept],
                      [row for row, k in enumerate(forces) if k in of_contacts])
     return (K.tocsc(), C.tocsc()) if is_sparse else (K, C)
 
@@ -44,7 +44,7 @@ def with_entries(rows: Any) -> Any:
     return rows[np.flatnonzero(abs(rows).sum(axis=1))]
 
 
-def _independent(rows: Any, of_contacts: list[int]) -> Any:
+def independent(rows: Any, of_contacts: list[int]) -> Any:
     """Return the constraints without empty ones, such as of a slide between two supported nodes, and without those of
     contacts that others imply.
     """

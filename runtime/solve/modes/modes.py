@@ -116,7 +116,7 @@ def modes(scene: SceneData, n: int, about: RestState | None = None, as_drawn: bo
         raise SceneError("modes", f"the scene has {possible} degrees of freedom, {n} modes were asked for",
                          "ask for fewer modes" + ", or take more elements" * bool(model.cables))
     _refuse_what_is_out_of_range(scene, model, K, M)
-    squares, vectors, error, after = _solve(K, M, constraints, n, _fewer(model))
+    squares, vectors, error, after = solve_modes(K, M, constraints, n, fewer_elements(model))
     strained = _rounded_shape(engine, model, K)
     error += np.abs(np.sum(vectors * (strained @ vectors), axis=0)) / np.sum(vectors * (M @ vectors), axis=0)
     after = min(after, np.min(squares.real, initial=np.inf, where=squares.real > error))
@@ -125,27 +125,33 @@ def modes(scene: SceneData, n: int, about: RestState | None = None, as_drawn: bo
                      for x in vectors.T])
     found = _named(model, engine.state()["q"], np.where(np.abs(squares) <= error, 0.0, squares), dofs, error)
     found.messages += notes + _unstable(found, about, K, constraints, static)
-    found.messages += _without_friction(scene, stick) + _uncertain(found, np.sqrt(max(after, 0.0)), _fewer(model))
+    found.messages += _without_friction(scene, stick) + _uncertain(found, np.sqrt(max(after, 0.0)), fewer_elements(model))
     for message in found.messages:
         warnings.warn(message, FunicularWarning, stacklevel=3)
     return found
 
 
+def go_to(static: StaticState, about: RestState, stick: bool, who: str) -> None:
+    """Go to a state of rest; who: "modes" or "linearise", in messages. Raises SceneError, see `modes`."""
+    state = f"the state that {'modes are' if who == 'modes' else 'the model is'} about"
+    if about.impending is not None:
+        raise SceneError(who, f'{state} has ropes at the limit of friction, "{about.impending}", which '
+                         f"{'modes do' if who == 'modes' else 'linear models do'} not have",
+                         "take an equilibrium without impending")
+    if about.wraps == "stick" and not stick:
+        raise SceneError(who, f"{state} has ropes that stick to their sheaves, without which it is not at rest",
+                         'take wraps="stick", or an equilibrium with wraps="slip"')
+    about.check_supports(static.model, static.scene)
+    own = static.keep()
+    if any(values.shape != own[name].shape for name, values in about.static_state.items()):
+        raise SceneError("scene", f"{state} has other hard contacts", "take an equilibrium of this scene")
+    static.restore(about.static_state)
+
+
 def _begin(static: StaticState, about: RestState | None, as_drawn: bool, stick: bool) -> list[str]:
     """Go to the state of the modes; return the messages on it. Raises SceneError, see `modes`."""
     if about is not None:
-        if about.impending is not None:
-            raise SceneError("modes", f'the state that modes are about has ropes at the limit of friction, "'
-                             f'{about.impending}", which modes do not have', "take an equilibrium without impending")
-        if about.wraps == "stick" and not stick:
-            raise SceneError("modes", "the state that modes are about has ropes that stick to their sheaves, without "
-                             "which it is not at rest", 'take wraps="stick", or an equilibrium with wraps="slip"')
-        about.check_supports(static.model, static.scene)
-        own = static.keep()
-        if any(values.shape != own[name].shape for name, values in about.static_state.items()):
-            raise SceneError("scene", "the state that modes are about has other hard contacts",
-                             "take an equilibrium of this scene")
-        static.restore(about.static_state)
+        go_to(static, about, stick, "modes")
         return []
     left = balance(static)
     if left.at_rest:
@@ -174,7 +180,7 @@ def _unstable(modes: Modes, about: RestState | None, K: csc_array, constraints: 
     return [f"{state}; {grows.format(which)}, by up to {modes.growth_rate.max():.4g} 1/s"]
 
 
-def _fewer(model: Model) -> str:
+def fewer_elements(model: Model) -> str:
     """Return the advice to take fewer elements, to precede another one; empty for a scene without cables."""
     return "take fewer elements, or " if model.cables else ""
 
@@ -253,14 +259,14 @@ def _owner(scene: SceneData, model: Model, unknown: int) -> str:
     return next(scene.bodies[body.name].where for body in reversed(model.bodies) if body.dof <= dof)
 
 
-def _solve(K: csc_array, M: csc_array, constraints: csc_array, n: int, fewer: str
+def solve_modes(K: csc_array, M: csc_array, constraints: csc_array, n: int, fewer: str
            ) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
     """Return at least the n smallest squares of frequencies of K x = w² M x on constraints x = 0 (n,), their vectors
     (coordinates, n), the rounding errors of the squares (n,), and the next square, infinite if that is not known.
 
-    fewer: an advice for messages, see `_fewer`.
+    fewer: an advice for messages, see `fewer_elements`.
     """
-    symmetric = _is_symmetric(K)
+    symmetric = is_symmetric(K)
     pencil = Pencil(K, M, constraints)
     if not symmetric and pencil.degrees > MAX_UNSYMMETRIC_DEGREES:
         raise SceneError("modes", "the stiffness is not symmetric, because loads turn with what they act on, and the "
@@ -294,7 +300,8 @@ def _small(K: csc_array, M: csc_array, constraints: csc_array, n: int, pencil: P
     return squares, vectors, error, np.inf
 
 
-def _is_symmetric(K: csc_array) -> bool:
+def is_symmetric(K: csc_array) -> bool:
+    """Return whether a stiffness is symmetric beyond rounding."""
     largest = np.sqrt(np.asarray(abs(K).max(axis=1).todense()).ravel()) if K.shape[0] else np.zeros(0)
     over = 1 / np.where(largest > 0, largest, 1.0)
     apart = abs(K - K.T).tocoo()

@@ -35,17 +35,22 @@ def balance(static: StaticState) -> Balance:
     Springs and other laws have the force of their gap. Joints and slides balance the rest in the least squares. Without
     balance the forces return to their former values, zero.
     """
-    model, drawn = static.model, static.keep()
-    rows, units = coordinates_of(model), units_of(static.weight, model)
-    stiffness = balance_forces(static)
+    drawn = static.keep()
+    found = imbalance(static, balance_forces(static))
+    if not found.at_rest:
+        static.restore(drawn)
+    return found
+
+
+def imbalance(static: StaticState, stiffness: csr_array) -> Balance:
+    """Return the residual of a static state with its present forces; stiffness: the tangent there."""
+    rows, units = coordinates_of(static.model), units_of(static.weight, static.model)
     left = np.abs(static.residual()[rows]) / units
     load = np.max(np.abs(static.load_vector()[rows]) / units, initial=0.0)
     sums = np.max(_size_of_sums(static, stiffness[rows][:, rows]) / units, initial=0.0)
     at_rest = bool(np.all(left <= BALANCE_TOLERANCE * load + FORCE_ROUNDING * sums))
-    if not at_rest:
-        static.restore(drawn)
     most = int(np.argmax(left)) if len(left) else 0
-    return Balance(float(np.max(left, initial=0.0)), _place(static, rows, most), at_rest)
+    return Balance(float(np.max(left, initial=0.0)), place_of(static, rows, most), at_rest)
 
 
 def balance_forces(static: StaticState) -> csr_array:
@@ -85,7 +90,7 @@ def _size_of_sums(static: StaticState, stiffness: csr_array) -> np.ndarray:
     return np.asarray(abs(stiffness) @ largest)
 
 
-def _place(static: StaticState, rows: np.ndarray, most: int) -> str:
+def place_of(static: StaticState, rows: np.ndarray, most: int) -> str:
     """Return the place of the row with the largest residual force."""
     model = static.model
     n = model.n_band + model.n_border_dof

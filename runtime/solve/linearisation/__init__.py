@@ -1,0 +1,1 @@
+"""Linear models of motion about a state of rest."""

@@ -1,0 +1,244 @@
+"""Outputs of a linear model: results of parts and their derivatives in directions of motion about a state of rest.
+
+Derivatives are those of the functions that make the results of a run: central differences, by positions, forces and
+accelerations with steps h and h/2, of the fourth order, and by velocities with a step so small that laws with a square
+of the speed have no part.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...engine import OUTPUTS
+from ...errors import UnknownResultError, near
+from ...model.kinds import COUPLINGS
+from ...model.part_states import States, part_states
+from ...parts.kinds import KINDS
+from ...parts.paths import COMPONENTS
+from ...parts.scene_data import SceneData
+from ..statics.static_problem import StaticState
+from .names import Coordinate
+
+STEP, RATE_STEP = 1e-3, 1e-7
+"""Largest change of a coordinate, m or rad, and of a rate, m/s or rad/s, of differences."""
+
+
+@dataclass(frozen=True, eq=False)
+class Directions:
+    """k directions: changes of unknowns and, of what is prescribed, of dofs, of velocities and of accelerations.
+
+    unknowns (unknowns, k); dofs, rates, accelerations (n_dof, k); coordinates: x, x', x'' (3, coordinates, k).
+    """
+
+    unknowns: np.ndarray
+    dofs: np.ndarray
+    rates: np.ndarray
+    accelerations: np.ndarray
+    coordinates: np.ndarray
+
+    @property
+    def count(self) -> int:
+        """Return their number."""
+        return int(self.unknowns.shape[1])
+
+
+@dataclass(frozen=True)
+class Output:
+    """An output: its name, label and quantity, and the entry of the quantity; unit; order and coordinate of a rate."""
+
+    name: str
+    label: str
+    quantity: str
+    entry: tuple[int, ...]
+    unit: str
+    coordinate: Coordinate | None = None
+    order: int = 0
+
+
+class Outputs:
+    """The outputs of a state of rest by name."""
+
+    def __init__(self, static: StaticState, scene: SceneData, coordinates: Sequence[Coordinate]):
+        """scene: of the static state; coordinates: of parts, which are outputs, too."""
+        self.static, self.scene = static, scene
+        self.model, self.engine = static.model, static.engine
+        self.kept = static.keep()
+        self.coordinates = {each.name: (each, 0) for each in coordinates}
+        self.coordinates |= {each.rate: (each, 1) for each in coordinates}
+        for each in coordinates:
+            if each.name.endswith(".s"):
+                self.coordinates[f"{each.name}_acceleration"] = each, 2
+        self.engine.forces_in_motion()
+        self.base = part_states(self.model, scene, self._states([(self.kept["q"], self.kept["s"])], None)).by_label()
+        for cable in self.model.cables:
+            self.base[cable.name]["position"] = self._points(cable.name, self.base)
+        self.of_motion = {*scene.cables, *scene.bodies}
+
+    def _points(self, cable: str, values: dict[str, dict[str, np.ndarray]]) -> np.ndarray:
+        """Return positions of the nodes of a cable."""
+        model = next(each for each in self.model.cables if each.name == cable)
+        return values[cable]["nodal_vectors"][:, :, model.vectors.index("r")]
+
+    def find(self, names: Sequence[str]) -> list[Output]:
+        """Return the outputs of these names; a vector is its components. Raises UnknownResultError."""
+        return [output for name in names for output in self._find(name)]
+
+    def _find(self, name: str) -> list[Output]:
+        if name in self.coordinates:
+            of, order = self.coordinates[name]
+            return [Output(name, "", "", (), of.unit + ("", "/s", "/s²")[order], of, order)]
+        label = max((each for each in self.base if name.startswith(f"{each}.")), key=len, default="")
+        quantity, *entries = name[len(label) + 1:].split(".") if label else [""]
+        if not label or quantity not in self.base[label]:
+            known = [f"{each}.{key}" for each, of in self.base.items() for key in of] + list(self.coordinates)
+            raise UnknownResultError(f'linearise: no output "{name}"; {near(name, known)}')
+        values = self.base[label][quantity][0]
+        entry = tuple(COMPONENTS[each] if each in COMPONENTS else int(each) if each.isdecimal() else -1
+                      for each in entries)
+        if len(entry) > values.ndim or any(not 0 <= k < n for k, n in zip(entry, values.shape, strict=False)):
+            raise UnknownResultError(f'linearise: "{label}.{quantity}" has entries {values.shape}, without '
+                                     f'"{".".join(entries)}"; name x, y, z or a number below the size')
+        unit = self._unit(label, quantity)
+        rest = values.shape[len(entry):]
+        if not rest:
+            return [Output(name, label, quantity, entry, unit)]
+        if rest == (3,):
+            return [Output(f"{name}.{axis}", label, quantity, (*entry, k), unit) for axis, k in COMPONENTS.items()]
+        size = " x ".join(str(n) for n in rest)
+        raise UnknownResultError(f'linearise: output "{name}" has {size} numbers, which depend on the mesh or on the '
+                                 f'part; name one, such as "{name}.{".".join(["0"] * len(rest))}"')
+
+    def _unit(self, label: str, quantity: str) -> str:
+        """Return the unit of a result."""
+        if quantity == "position":
+            return "m"
+        parts = [each for part in self.scene.parts() for each in (part, *getattr(part, "wheels", ()))]
+        own = [each for each in parts if label in (each.given_name, getattr(each, "label", None))]
+        found = next((each.results[quantity].units for each in own if quantity in getattr(each, "results", {})), None)
+        if found is None:
+            found = next((each.results[quantity].units for kind in KINDS for each in (kind, *kind.parts_within)
+                          if quantity in each.results), "")
+        return found
+
+    def values(self, outputs: Sequence[Output]) -> np.ndarray:
+        """Return the outputs (n,) at rest; coordinates of joints are zero there."""
+        return np.array([self._value(output) for output in outputs])
+
+    def _value(self, output: Output) -> float:
+        if output.coordinate is None:
+            return float(self.base[output.label][output.quantity][(0, *output.entry)])
+        label, _, quantity = output.name.rpartition(".")
+        return float(self.base[label][quantity][0]) if quantity == "s" else 0.0
+
+    def derivatives(self, outputs: Sequence[Output], along: Directions) -> np.ndarray:
+        """Return (outputs, k): derivatives of outputs in k directions."""
+        found = np.zeros((len(outputs), along.count))
+        for row, output in enumerate(outputs):
+            if output.coordinate is not None:
+                found[row] = output.coordinate.row @ along.coordinates[output.order]
+        labels = {output.label for output in outputs if output.coordinate is None}
+        if not labels or not along.count:
+            return found
+        moved = self._by_motion(labels, along)
+        speeds = self._by_rates(labels, along)
+        for row, output in enumerate(outputs):
+            if output.coordinate is None:
+                for part in (moved, speeds):
+                    if output.quantity in part.get(output.label, {}):
+                        found[row] += part[output.label][output.quantity][(slice(None), *output.entry)]
+        return found
+
+    def _by_motion(self, labels: set[str], along: Directions) -> dict[str, dict[str, np.ndarray]]:
+        """Return the derivatives by positions, forces and accelerations."""
+        size = np.maximum(np.abs(self._spread(along)).max(axis=0, initial=0.0), np.finfo(float).tiny)
+        steps = STEP / np.maximum(size, STEP)
+        rows, rates, over = [], [], np.concatenate([steps, -steps, steps / 2, -steps / 2])
+        numbers: list[tuple[dict[str, np.ndarray], np.ndarray]] = []
+        for column, h in zip(np.tile(np.arange(along.count), 4), over, strict=True):
+            self._go(h * along.unknowns[:, column], h * along.dofs[:, column])
+            self.engine.set_rates(np.zeros(self.model.n_dof), h * along.accelerations[:, column])
+            state = self.engine.state()
+            rows.append((state["q"], state["s"]))
+            rates.append((np.zeros(self.model.n_dof), h * along.accelerations[:, column]))
+            numbers.append(self._numbers(labels))
+        self.static.restore(self.kept, prescribe=False)
+        at = self._results(labels, self._states(rows, rates, numbers))
+        n = along.count
+        return {label: {name: _richardson(values, n, steps) for name, values in of.items()} for label, of in at.items()}
+
+    def _by_rates(self, labels: set[str], along: Directions) -> dict[str, dict[str, np.ndarray]]:
+        """Return the derivatives by velocities."""
+        size = np.maximum(np.abs(along.rates).max(axis=0, initial=0.0), 1.0)
+        steps = RATE_STEP / size
+        if labels <= self.of_motion:
+            steps = np.ones(along.count)
+        rows, rates = [], []
+        numbers: list[tuple[dict[str, np.ndarray], np.ndarray]] = []
+        for column, h in zip(np.tile(np.arange(along.count), 2), np.concatenate([steps, -steps]), strict=True):
+            v = h * along.rates[:, column]
+            self.engine.set_rates(v, np.zeros(self.model.n_dof))
+            rows.append((self.kept["q"], self.kept["s"]))
+            rates.append((v, np.zeros(self.model.n_dof)))
+            numbers.append(self._numbers(labels))
+        self.static.restore(self.kept, prescribe=False)
+        at = self._results(labels, self._states(rows, rates, numbers))
+        n = along.count
+        return {label: {name: (values[:n] - values[n:]) / (2 * _over(steps, values)) for name, values in of.items()}
+                for label, of in at.items()}
+
+    def _results(self, labels: set[str], at: States) -> dict[str, dict[str, np.ndarray]]:
+        found = {label: part_states(self.model, self.scene, at, alone=label).by_label()[label] for label in labels}
+        for label in labels & set(self.scene.cables):
+            found[label]["position"] = self._points(label, found)
+        return found
+
+    def _spread(self, along: Directions) -> np.ndarray:
+        """Return the changes of dofs and coordinates, (n, k)."""
+        return np.concatenate([along.dofs, along.coordinates[0]])
+
+    def _go(self, unknowns: np.ndarray, dofs: np.ndarray) -> None:
+        """Move the state from rest by unknowns and prescribed dofs."""
+        q = self.kept["q"]
+        if dofs.any():
+            q = q.copy()
+            q[: len(dofs)] += dofs[: len(q)]
+        self.engine.set_state(0.0, **self.kept | {"q": q}, prescribe=False)
+        self.engine.move(unknowns)
+
+    def _numbers(self, labels: set[str]) -> tuple[dict[str, np.ndarray], np.ndarray]:
+        """Return the outputs of couplings by kind and the reactions, of labels that need them."""
+        if labels <= self.of_motion:
+            return {}, np.zeros(0)
+        groups = {kind.name: kind.group for kind in COUPLINGS}
+        reaction = self.engine.forces_in_motion()
+        return {kind: self.engine.outputs_in_motion(kind) for kind in OUTPUTS if kind in groups}, reaction
+
+    def _states(self, rows: Sequence[tuple[np.ndarray, np.ndarray]],
+                rates: Sequence[tuple[np.ndarray, np.ndarray]] | None,
+                numbers: Sequence[tuple[dict[str, np.ndarray], np.ndarray]] = ()) -> States:
+        n, still = len(rows), self.model.n_dof
+        v, a = (np.array([each[k] for each in rates]) if rates else np.zeros((n, still)) for k in range(2))
+        by_kind, reaction = {}, np.zeros((n, still))
+        for kind in OUTPUTS:
+            if numbers and kind in numbers[0][0]:
+                by_kind[kind] = np.array([each[0][kind] for each in numbers])
+            else:
+                one = self.engine.static_outputs(kind)
+                by_kind[kind] = np.broadcast_to(one, (n, *one.shape))
+        if numbers and len(numbers[0][1]):
+            reaction = np.array([each[1] for each in numbers])
+        return States(np.array([row[0] for row in rows]), v, a, np.array([row[1] for row in rows]), reaction, by_kind)
+
+
+def _over(steps: np.ndarray, values: np.ndarray) -> np.ndarray:
+    return steps.reshape(-1, *[1] * (values.ndim - 1))
+
+
+def _richardson(values: np.ndarray, n: int, steps: np.ndarray) -> np.ndarray:
+    """Return derivatives from results at steps h, -h, h/2, -h/2 of n directions."""
+    coarse = (values[:n] - values[n : 2 * n]) / (2 * _over(steps, values))
+    fine = (values[2 * n : 3 * n] - values[3 * n :]) / _over(steps, values)
+    return np.asarray((4 * fine - coarse) / 3)
