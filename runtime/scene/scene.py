@@ -457,9 +457,10 @@ class Scene(Viewable, DescribedScene):
         with uninterrupted(), one_blas_thread, enough_memory(), interruptible():
             at_rest = state is not None or drawn_in_balance(self)
         state = state if at_rest else self.equilibrium()
+        scene = cast(Scene, state.scene) if state is not None and not at_rest and state.adjusted else self
         with uninterrupted(), one_blas_thread, enough_memory(), interruptible():
-            found = linearise(self, *names, state, settings.reduce)
-        return LinearModel.of(found, self, state)
+            found = linearise(scene, *names, state, settings.reduce)
+        return LinearModel.of(found, scene, state)
 
     def animation(self, title: str | None = None) -> Animation:
         """Return pictures of the scene as drawn; see `Viewable.animation`."""

@@ -33,7 +33,8 @@ class Basis:
     """The basis and the reduced matrices.
 
     Z (coordinates, n); mass, damping, stiffness (n, n); names, units of coordinates and of their rates; squares: those
-    of the frequencies of undamped modes, where these are the coordinates and the stiffness is symmetric, else None.
+    of the frequencies of undamped modes, where these are the coordinates and the stiffness is symmetric, else None;
+    rows (n, coordinates): y = rows x, of coordinates with names, else None; said: what the coordinates are.
     """
 
     Z: np.ndarray
@@ -46,6 +47,7 @@ class Basis:
     rate_units: list[str]
     squares: np.ndarray | None
     said: str
+    rows: np.ndarray | None = None
 
 
 def basis_of(equations: Equations, scene: SceneData, sticking: Sequence[str], reduce: int | None, fewer: str) -> Basis:
@@ -83,7 +85,7 @@ def _minimal(equations: Equations, found: list[Coordinate], possible: int) -> Ba
         return None
     return Basis(Z, mass, reduced(Z, equations.D), reduced(Z, equations.K), [each.name for each in found],
                  [each.unit for each in found], [each.rate for each in found], [each.rate_unit for each in found], None,
-                 "coordinates are those of joints and slides")
+                 "coordinates are those of joints and slides", J)
 
 
 def reduced(Z: np.ndarray, matrix: csc_array) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -75,18 +75,8 @@ def linearise(drawn: SceneData, inputs: Sequence[str], outputs: Sequence[str], a
     def model_of(each: SceneData) -> Model:
         return build(with_sticking_wraps(each) if stick else each)
 
-    model = model_of(scene)
-    without_waves(model)
-    if about is not None:
-        resolve_contact_edges(model, scene, about.static_state["q"])
-    static = StaticState(scene, EquilibriumSettings(), model)
-    if about is None:
-        left = balance(static)
-    else:
-        go_to(static, about, stick, "linearise")
-        left = imbalance(static, static.tangent().tocsr())
-    if not left.at_rest:
-        raise _not_at_rest(left)
+    static = _at_rest(scene, model_of, about)
+    model = static.model
     static.engine.vibrate(True)
     free = equations(static)
     held, sticking = _held(free, scene, stick)
@@ -108,6 +98,26 @@ def linearise(drawn: SceneData, inputs: Sequence[str], outputs: Sequence[str], a
                       [each.unit for each in named], results.values(named), basis.said,
                       basis.squares if not np.any(basis.damping) and not more else None,
                       _messages(scene, sticking, columns) + _stability(about))
+
+
+def _at_rest(scene: SceneData, model_of: Callable[[SceneData], Model], about: RestState | None) -> StaticState:
+    """Return the static state about which the model is, in which forces balance. Raises SceneError."""
+    model = model_of(scene)
+    without_waves(model)
+    static = StaticState(scene, EquilibriumSettings(), model)
+    if about is None:
+        left = balance(static)
+    else:
+        go_to(static, about, about.wraps == "stick", "linearise")
+        left = imbalance(static, static.tangent().tocsr())
+    if not left.at_rest:
+        raise _not_at_rest(left)
+    if about is None or not any(contact.cable >= 0 for contact in model.contacts):
+        return static
+    resolve_contact_edges(model, scene, about.static_state["q"])
+    static = StaticState(scene, EquilibriumSettings(), model)
+    static.restore(about.static_state)
+    return static
 
 
 def _not_at_rest(left: Balance) -> SceneError:
@@ -172,7 +182,14 @@ class Columns:
         self.inertia, self.drag = self._prescribed()
         self.P = self._particular()
         inverse = np.linalg.inv(basis.mass) if n else np.zeros((0, 0))
-        self.P -= Z @ (inverse @ (Z.T @ (own.M @ self.P + self.inertia)))
+        jumps = np.zeros((n, m))
+        if basis.rows is None:
+            jumps = inverse @ (Z.T @ (own.M @ self.P + self.inertia))
+            self.P -= Z @ jumps
+            jumps[:] = 0.0
+        else:
+            self._keep_names(inverse)
+            jumps[:, self.rates] = -(inverse @ (Z.T @ (own.M @ self.P + self.inertia)))[:, self.rates]
         k = self.r + own.K @ self.P
         self.f0 = -Z.T @ k
         self.f1 = -Z.T @ (own.D @ self.P + self.drag)
@@ -180,8 +197,19 @@ class Columns:
         if static_part and m:
             self.P = self.P + self._static_response(k)
         self.E = inverse @ self.f1
-        self.E[:, self.rates] = 0.0
+        self.E[:, self.rates] = jumps[:, self.rates]
         self._assemble(inverse)
+
+    def _keep_names(self, inverse: np.ndarray) -> None:
+        """Let coordinates of joints and slides be those of the whole motion where inputs are velocities, whose jumps
+        E takes up; of positions, which would cause a force by their second rate, P has no force of inertia.
+        """
+        own, Z, rows = self.own, self.basis.Z, self.basis.rows
+        assert rows is not None, "of coordinates with names"
+        named = rows @ self.P
+        by_inertia = inverse @ (Z.T @ (own.M @ self.P + self.inertia))
+        by_inertia[:, self.rates] = named[:, self.rates]
+        self.P -= Z @ by_inertia
 
     def _prescribed(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the forces on coordinates by accelerations and by velocities of what is prescribed, (coordinates, m).
@@ -241,13 +269,14 @@ class Columns:
         n, m, basis = len(self.basis.names), len(self.inputs), self.basis
         q = len(self.rates)
         N = 2 * n + q
-        f0, f1 = self.f0.copy(), self.f1
+        f0, f1 = self.f0, self.f1
         A, B = np.zeros((N, N)), np.zeros((N, m))
         A[:n, n : 2 * n] = np.eye(n)
         A[n : 2 * n, :n], A[n : 2 * n, n : 2 * n] = -inverse @ basis.stiffness, -inverse @ basis.damping
         A[n : 2 * n, 2 * n :] = inverse @ f0[:, self.rates]
-        direct = f0 - basis.damping @ self.E
+        direct = f0.copy()
         direct[:, self.rates] = f1[:, self.rates]
+        direct -= basis.damping @ self.E
         B[:n], B[n : 2 * n] = self.E, inverse @ direct
         for row, k in enumerate(self.rates):
             B[2 * n + row, k] = 1.0

@@ -17,13 +17,15 @@ from ...errors import UnknownResultError, near
 from ...model.kinds import COUPLINGS
 from ...model.part_states import States, part_states
 from ...parts.kinds import KINDS
-from ...parts.paths import COMPONENTS
+from ...parts.paths import COMPONENTS, label_of
 from ...parts.scene_data import SceneData
 from ..statics.static_problem import StaticState
 from .names import Coordinate
 
 STEP, RATE_STEP = 1e-3, 1e-7
 """Largest change of a coordinate, m or rad, and of a rate, m/s or rad/s, of differences."""
+SUPPORTS = {"pins", "clamps", "motions", "ties", "ropes"}
+"""Groups whose results are reactions."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,16 +156,16 @@ class Outputs:
     def _by_motion(self, labels: set[str], along: Directions) -> dict[str, dict[str, np.ndarray]]:
         """Return the derivatives by positions, forces and accelerations."""
         size = np.maximum(np.abs(self._spread(along)).max(axis=0, initial=0.0), np.finfo(float).tiny)
-        steps = STEP / np.maximum(size, STEP)
+        steps, needs, still = STEP / np.maximum(size, STEP), self._needs(labels), np.zeros(self.model.n_dof)
         rows, rates, over = [], [], np.concatenate([steps, -steps, steps / 2, -steps / 2])
         numbers: list[tuple[dict[str, np.ndarray], np.ndarray]] = []
         for column, h in zip(np.tile(np.arange(along.count), 4), over, strict=True):
             self._go(h * along.unknowns[:, column], h * along.dofs[:, column])
-            self.engine.set_rates(np.zeros(self.model.n_dof), h * along.accelerations[:, column])
+            rates.append((still, h * along.accelerations[:, column]))
+            self.engine.set_rates(*rates[-1])
             state = self.engine.state()
             rows.append((state["q"], state["s"]))
-            rates.append((np.zeros(self.model.n_dof), h * along.accelerations[:, column]))
-            numbers.append(self._numbers(labels))
+            numbers.append(self._numbers(needs))
         self.static.restore(self.kept, prescribe=False)
         at = self._results(labels, self._states(rows, rates, numbers))
         n = along.count
@@ -171,23 +173,37 @@ class Outputs:
 
     def _by_rates(self, labels: set[str], along: Directions) -> dict[str, dict[str, np.ndarray]]:
         """Return the derivatives by velocities."""
-        size = np.maximum(np.abs(along.rates).max(axis=0, initial=0.0), 1.0)
-        steps = RATE_STEP / size
-        if labels <= self.of_motion:
-            steps = np.ones(along.count)
+        needs, still = self._needs(labels), np.zeros(self.model.n_dof)
+        steps = np.ones(along.count)
+        if labels <= self.of_motion or not self._depends_on_rates(needs, along):
+            needs = [], False
+        else:
+            steps = RATE_STEP / np.maximum(np.abs(along.rates).max(axis=0, initial=0.0), 1.0)
         rows, rates = [], []
         numbers: list[tuple[dict[str, np.ndarray], np.ndarray]] = []
         for column, h in zip(np.tile(np.arange(along.count), 2), np.concatenate([steps, -steps]), strict=True):
-            v = h * along.rates[:, column]
-            self.engine.set_rates(v, np.zeros(self.model.n_dof))
             rows.append((self.kept["q"], self.kept["s"]))
-            rates.append((v, np.zeros(self.model.n_dof)))
-            numbers.append(self._numbers(labels))
+            rates.append((h * along.rates[:, column], still))
+            if any(needs):
+                self.engine.set_rates(*rates[-1])
+                numbers.append(self._numbers(needs))
         self.static.restore(self.kept, prescribe=False)
         at = self._results(labels, self._states(rows, rates, numbers))
         n = along.count
         return {label: {name: (values[:n] - values[n:]) / (2 * _over(steps, values)) for name, values in of.items()}
                 for label, of in at.items()}
+
+    def _depends_on_rates(self, needs: tuple[list[str], bool], along: Directions) -> bool:
+        """Return whether outputs of couplings or reactions change in a motion in all directions at once."""
+        still = np.zeros(self.model.n_dof)
+        whole = along.rates @ np.random.default_rng(2).uniform(0.5, 1.0, along.count)
+        found = []
+        for v in (still, whole):
+            self.engine.set_rates(v, still)
+            numbers, reaction = self._numbers(needs)
+            found.append(np.concatenate([reaction, *(each.ravel() for each in numbers.values())]))
+        self.static.restore(self.kept, prescribe=False)
+        return bool(np.any(found[0] != found[1]))
 
     def _results(self, labels: set[str], at: States) -> dict[str, dict[str, np.ndarray]]:
         found = {label: part_states(self.model, self.scene, at, alone=label).by_label()[label] for label in labels}
@@ -208,13 +224,21 @@ class Outputs:
         self.engine.set_state(0.0, **self.kept | {"q": q}, prescribe=False)
         self.engine.move(unknowns)
 
-    def _numbers(self, labels: set[str]) -> tuple[dict[str, np.ndarray], np.ndarray]:
-        """Return the outputs of couplings by kind and the reactions, of labels that need them."""
-        if labels <= self.of_motion:
-            return {}, np.zeros(0)
-        groups = {kind.name: kind.group for kind in COUPLINGS}
-        reaction = self.engine.forces_in_motion()
-        return {kind: self.engine.outputs_in_motion(kind) for kind in OUTPUTS if kind in groups}, reaction
+    def _needs(self, labels: set[str]) -> tuple[list[str], bool]:
+        """Return the kinds of couplings and whether the reactions of supports have part in results of labels."""
+        groups = {part.group for part in self.scene.parts() if label_of(part) in labels}
+        known = {label_of(part) for part in self.scene.parts()}
+        if labels - known or "ropes" in groups:  # parts within a rope
+            return list(OUTPUTS), True
+        kinds = [kind.name for kind in COUPLINGS if kind.name in OUTPUTS and (
+            kind.group in groups or ("slides" in groups and kind.name == "joint"))]
+        return kinds, bool(groups & SUPPORTS)
+
+    def _numbers(self, needs: tuple[list[str], bool]) -> tuple[dict[str, np.ndarray], np.ndarray]:
+        """Return the outputs of couplings by kind and the reactions that results need."""
+        kinds, reacts = needs
+        return ({kind: self.engine.outputs_in_motion(kind) for kind in kinds},
+                self.engine.forces_in_motion() if reacts else np.zeros(0))
 
     def _states(self, rows: Sequence[tuple[np.ndarray, np.ndarray]],
                 rates: Sequence[tuple[np.ndarray, np.ndarray]] | None,
