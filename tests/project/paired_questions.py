@@ -287,6 +287,22 @@ def modes_as_drawn(on: Asked) -> None:
     found.save_html(on.folder / "modes.html")
 
 
+def linear_models(on: Asked) -> None:
+    """All that loads or drives the scene acts on positions and forces of its parts."""
+    scene = on.scene
+    inputs = ["gravity.x"] + [f"{name}.value.y" for name in scene.loads] + [f"{name}.velocity.x" for name in scene.fluids]
+    inputs += [f"{part.name}.{drive}" for part in (*scene.joints.values(), *scene.slides.values())
+               for drive in ("angle", "distance", "drive", "velocity") if getattr(part, drive, None) is not None]
+    inputs += [f"{motion.label}.displacement.y" for motion in scene.motions
+               if motion.displacement is not None and motion.displacement[1] is not None]
+    names = [name for name, values in on.equilibrium().items() if values.shape == (3,) and name.endswith(
+        (".position", ".force", ".velocity")) and np.isfinite(values).all()]
+    found = scene.linearise(inputs, [] if scene.joints or scene.slides else names, on.equilibrium())
+    for matrix in (found.A, found.B, found.C, found.D, found.poles, found.response(1.234)):
+        assert np.isfinite(matrix).all()
+    assert len(found.states) == len(found.state_units) == len(found.A)
+
+
 # ---- scenes
 
 def text(on: Asked) -> None:
@@ -327,5 +343,5 @@ QUESTIONS: dict[str, Callable[[Asked], None]] = {question.__name__: question for
     motion, fixed_steps, from_rest, from_relaxed, from_another_run, from_arrays, named_quantities, on_threads, many,
     errors, saved, resumed, stepped, forces_in_sections, forces_at_a_slide, page_of_run, plots_of_run, film_of_run,
     files_for_paraview, picture_of_run, page_of_scene, plots, rest, forces_at_rest, page_of_rest, load_path,
-    loads_in_steps, relaxed, adjusted, modes_at_rest, modes_as_drawn, text, schema, replaced, without_a_part,
+    loads_in_steps, relaxed, adjusted, modes_at_rest, modes_as_drawn, linear_models, text, schema, replaced, without_a_part,
     remeshed, chosen, swept)}

@@ -120,13 +120,13 @@ class _Differences:
             rate_of = self._signals_at(1.0)
             residual, c = _romberg(lambda h: self._held(rate_of, h), STEP, self.path)
             return Input(self.path.text, unit or self._rate_unit(part), self.value, residual, c, True, True)
-        if part is None or (isinstance(part, LINEAR) and self.path.entries[0] in ("value", "scale")):
+        if isinstance(part, LINEAR):
             h = max(1.0, abs(self.value))
             above, below = self._changed(h), self._changed(-h)
             self._check_smooth(above[0] + below[0] - 2 * self.static.residual(), above[0] - below[0])
             return Input(self.path.text, unit, self.value, (above[0] - below[0]) / (2 * h), np.zeros(self._n_dof))
         residual, c = _romberg(self._both_sides, STEP * max(1.0, abs(self.value)), self.path)
-        moves = not isinstance(part, Fluid)
+        moves = isinstance(part, Motion | Joint | Slide)
         return Input(self.path.text, unit or self._unit_of_drive(part), self.value, residual,
                      c if moves else np.zeros_like(c), moves)
 

@@ -73,8 +73,9 @@ class Outputs:
         for each in coordinates:
             if each.name.endswith(".s"):
                 self.coordinates[f"{each.name}_acceleration"] = each, 2
-        self.engine.forces_in_motion()
-        self.base = part_states(self.model, scene, self._states([(self.kept["q"], self.kept["s"])], None)).by_label()
+        numbers = self._numbers((list(OUTPUTS), True))
+        at_rest = self._states([(self.kept["q"], self.kept["s"])], None, [numbers])
+        self.base = part_states(self.model, scene, at_rest).by_label()
         for cable in self.model.cables:
             self.base[cable.name]["position"] = self._points(cable.name, self.base)
         self.of_motion = {*scene.cables, *scene.bodies}
