@@ -10,7 +10,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -45,12 +45,21 @@ REMEDY = ("inputs are gravity, values and scales of loads, displacements and rot
           "slides, and velocities of fluids")
 
 
+class Side(NamedTuple):
+    """A step of an input, and states at rest with the input above and below its value by it."""
+
+    step: float
+    above: StaticState
+    below: StaticState
+
+
 @dataclass(frozen=True, eq=False)
 class Input:
     """An input: name and unit, value at rest, and the change by one unit of it.
 
     residual (unknowns,): of the residual, with prescribed dofs moved; c (n_dof,): of prescribed dofs. moves: whether it
-    moves something as prescribed; is_rate: whether c and residual are those of the integral of the input.
+    moves something as prescribed; is_rate: whether c and residual are those of the integral of the input. sides: states
+    with the input changed, where results may depend on it beside the motion.
     """
 
     name: str
@@ -60,6 +69,7 @@ class Input:
     c: np.ndarray
     moves: bool = False
     is_rate: bool = False
+    sides: tuple[Side, ...] = ()
 
 
 def inputs_of(static: StaticState, scene: SceneData, drawn: SceneData, names: Sequence[str],
@@ -121,14 +131,16 @@ class _Differences:
             residual, c = _romberg(lambda h: self._held(rate_of, h), STEP, self.path)
             return Input(self.path.text, unit or self._rate_unit(part), self.value, residual, c, True, True)
         if isinstance(part, LINEAR):
-            h = max(1.0, abs(self.value))
-            above, below = self._changed(h), self._changed(-h)
-            self._check_smooth(above[0] + below[0] - 2 * self.static.residual(), above[0] - below[0])
-            return Input(self.path.text, unit, self.value, (above[0] - below[0]) / (2 * h), np.zeros(self._n_dof))
-        residual, c = _romberg(self._both_sides, STEP * max(1.0, abs(self.value)), self.path)
+            residual = self._changed(1.0).residual() - self.static.residual()
+            return Input(self.path.text, unit, self.value, residual, np.zeros(self._n_dof))
+        if part is None and not (self.drawn.contacts or self.drawn.drags):  # stiffness of contacts, buoyancy
+            above, below = self._changed(1.0).residual(), self._changed(-1.0).residual()
+            return Input(self.path.text, unit, self.value, (above - below) / 2, np.zeros(self._n_dof))
+        sides: list[Side] = []
+        residual, c = _romberg(lambda h: self._both_sides(h, sides), STEP * max(1.0, abs(self.value)), self.path)
         moves = isinstance(part, Motion | Joint | Slide)
         return Input(self.path.text, unit or self._unit_of_drive(part), self.value, residual,
-                     c if moves else np.zeros_like(c), moves)
+                     c if moves else np.zeros_like(c), moves, sides=() if moves else tuple(sides))
 
     @property
     def _n_dof(self) -> int:
@@ -144,13 +156,15 @@ class _Differences:
         turns = isinstance(part, Joint) and part.joint_kind in ("revolute", "cylindrical")
         return "rad/s" if turns else "m/s"
 
-    def _both_sides(self, h: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return the central differences of the residual and of the prescribed dofs with a step."""
+    def _both_sides(self, h: float, sides: list[Side]) -> tuple[np.ndarray, np.ndarray]:
+        """Return the central differences of the residual and of the prescribed dofs with a step; append the states."""
         above, below = self._changed(h), self._changed(-h)
-        return (above[0] - below[0]) / (2 * h), (above[1] - below[1]) / (2 * h)
+        sides.append(Side(h, above, below))
+        return ((above.residual() - below.residual()) / (2 * h),
+                (self._dofs(above) - self._dofs(below)) / (2 * h))
 
-    def _changed(self, change: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return residual and prescribed dofs in the present state with the input changed."""
+    def _changed(self, change: float) -> StaticState:
+        """Return the present state with the input changed."""
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", FunicularWarning)
             scene = in_plane(Variants(self.drawn, [self.path]).at({self.path: self.value + change}))
@@ -161,7 +175,7 @@ class _Differences:
             raise SceneError(self.path.where, "it moves the scene out of its plane, in which the scene is computed",
                              'draw it in space, such as with element="cable12"')
         static.restore(self.static.keep())
-        return static.residual(), self._dofs(static)
+        return static
 
     def _signals_at(self, change: float) -> dict[int, float]:
         """Return the signals of the model that change with the input, and their rates by it."""
@@ -192,12 +206,6 @@ class _Differences:
         found[:first] = static.keep()["q"][:first]
         return found
 
-    def _check_smooth(self, second: np.ndarray, first: np.ndarray) -> None:
-        """Raise SceneError where forces are not linear in the input."""
-        if np.max(np.abs(second), initial=0.0) > KINK_TOLERANCE * np.max(np.abs(first), initial=0.0) + 1e-9 * np.max(
-                np.abs(self.static.residual()), initial=0.0):
-            raise _not_smooth(self.path)
-
 
 def _not_smooth(path: Path) -> SceneError:
     return SceneError(path.where, "forces have a kink at this value of the input, where no linear model exists",
@@ -210,11 +218,14 @@ def _romberg(difference: Callable[[float], tuple[np.ndarray, np.ndarray]], h: fl
     where forces are not smooth.
     """
     steps = [difference(h / 2**k) for k in range(3)]
-    first = [[2 * fine - coarse for coarse, fine in zip(a, b, strict=True)] for a, b in zip(steps, steps[1:], strict=False)]
-    residual, c = ((4 * fine - coarse) / 3 for coarse, fine in zip(*first, strict=True))
-    size = np.max(np.abs(residual), initial=0.0)
-    if np.max(np.abs(residual - first[1][0]), initial=0.0) > KINK_TOLERANCE * size + np.finfo(float).tiny:
-        noise = np.max(np.abs(steps[0][0]), initial=0.0)
-        if noise > KINK_TOLERANCE:
-            raise _not_smooth(path)
+    residual, c = (eliminated([step[k] for step in steps]) for k in range(2))
+    error = np.max(np.abs(residual - (2 * steps[2][0] - steps[1][0])), initial=0.0)
+    if error > KINK_TOLERANCE * max(np.max(np.abs(residual), initial=0.0), np.max(np.abs(steps[0][0]), initial=0.0), 1.0):
+        raise _not_smooth(path)
     return residual, c
+
+
+def eliminated(steps: Sequence[np.ndarray]) -> np.ndarray:
+    """Return a derivative from differences with steps h, h/2, h/4, without the terms of h and h²."""
+    coarse, fine = (2 * b - a for a, b in zip(steps, steps[1:], strict=False))
+    return (4 * fine - coarse) / 3

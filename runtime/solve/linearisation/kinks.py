@@ -12,7 +12,7 @@ import numpy as np
 
 from ...errors import SceneError
 from ..statics.balance import place_of
-from ..statics.static_problem import StaticState
+from .equations import Equations
 
 STEP = 1e-6
 """Largest of three steps, of displacements in m or rad; each is half of the one before."""
@@ -24,28 +24,40 @@ FORCE_ROUNDING = 1e-13
 """Of the sum of forces, within which second differences are rounding."""
 
 
-def refuse_kinks(static: StaticState, Z: np.ndarray, kept: np.ndarray) -> None:
-    """Raise SceneError where the forces on a coordinate have a kink by motions Z (coordinates, n)."""
+def refuse_kinks(own: Equations, Z: np.ndarray) -> None:
+    """Raise SceneError where the forces on a coordinate, or those of a law, have a kink by motions Z (coordinates, n).
+    """
     if not Z.size:
         return
+    static, rows = own.static, np.concatenate([own.kept, own.laws])
     along = Z @ np.random.default_rng(1).choice([-1.0, 1.0], Z.shape[1]) / np.maximum(
         np.abs(Z).max(axis=0), np.finfo(float).tiny).max()
     along /= np.abs(along).max() or 1.0
     change, state = np.zeros(static.engine.unknowns), static.keep()
-    change[kept] = along
+    change[own.kept] = along
 
     def residual(h: float) -> np.ndarray:
         static.restore(state, prescribe=False)
         static.move(h * change)
-        return static.residual()[kept]
+        return static.residual()[rows]
 
-    at = _kink(residual, np.abs(static.tangent()[kept][:, kept]) @ np.abs(along))
+    stiffness = np.concatenate([abs(own.K) @ np.abs(along), abs(own.law_stiffness) @ np.abs(along)])
+    at = _kink(residual, stiffness)
     static.restore(state, prescribe=False)
     if at is not None:
-        raise SceneError("linearise", f"forces have a kink at this state, largest on {place_of(static, kept, at)}: they "
+        raise SceneError("linearise", f"forces have a kink at this state, largest on {_place(own, int(rows[at]))}: they "
                          "change differently in the two directions of a motion, as of a spring without compression at "
-                         "its stress-free length or a contact that just touches",
-                         "linearise about a state beside it")
+                         "its stress-free length or a contact that just touches", "linearise about a state beside it")
+
+
+def _place(own: Equations, unknown: int) -> str:
+    """Return the place of an unknown in words."""
+    model = own.model
+    n = model.n_band + model.n_border_dof
+    for coupling in model.couplings:
+        if coupling.unknown <= unknown - n < coupling.unknown + coupling.n_coordinates + coupling.n_forces:
+            return f'{coupling.type.replace("_", " ")} "{coupling.name}"'
+    return place_of(own.static, own.kept, int(np.flatnonzero(own.kept == unknown)[0]))
 
 
 def _kink(residual: Callable[[float], np.ndarray], stiffness: np.ndarray) -> int | None:

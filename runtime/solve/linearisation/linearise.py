@@ -17,6 +17,7 @@ from ...parts.in_plane import in_plane
 from ...parts.rope import rough_sheaves
 from ...parts.scene_data import SceneData
 from ...parts.settings import EquilibriumSettings
+from ..linear.condensation import condensed
 from ..modes.contact_edges import resolve_contact_edges
 from ..modes.modes import fewer_elements, go_to
 from ..modes.stuck_wraps import stuck_wraps
@@ -83,7 +84,7 @@ def linearise(drawn: SceneData, inputs: Sequence[str], outputs: Sequence[str], a
     own = equations(static, held) if held.shape[0] else free
     given = inputs_of(static, scene, drawn, inputs, model_of)
     basis = basis_of(own, scene, sticking, reduce, fewer_elements(model))
-    refuse_kinks(static, basis.Z, own.kept)
+    refuse_kinks(own, basis.Z)
     columns = Columns(own, held, basis, given, reduce is not None)
     results = Outputs(static, scene, of_parts(free, scene))
     named = results.find(outputs)
@@ -109,7 +110,7 @@ def _at_rest(scene: SceneData, model_of: Callable[[SceneData], Model], about: Re
         left = balance(static)
     else:
         go_to(static, about, about.wraps == "stick", "linearise")
-        left = imbalance(static, static.tangent().tocsr())
+        left = imbalance(static, csr_array(condensed(static.tangent(), model)[0]))
     if not left.at_rest:
         raise _not_at_rest(left)
     if about is None or not any(contact.cable >= 0 for contact in model.contacts):
@@ -322,7 +323,7 @@ class Columns:
         laws = self.residual[own.laws] @ p[0] + own.law_stiffness @ x + own.law_damping @ xd
         unknowns[own.laws] = -laws
         T = own.dofs
-        return Directions(unknowns, self.c @ p[0], T @ xd + self.c @ p[1], T @ xdd + self.c @ p[2],
+        return Directions(unknowns, self.c @ p[0], T @ x + self.c @ p[0], T @ xd + self.c @ p[1], T @ xdd + self.c @ p[2],
                           np.array([x, xd, xdd]))
 
 
@@ -337,6 +338,7 @@ def _rows(columns: Columns, results: Outputs, named: Sequence[Any]) -> tuple[np.
     """Return C and D. Raises SceneError for outputs that depend on rates of an input."""
     N = columns.A.shape[0]
     both = results.derivatives(named, columns.directions(0)[0])
+    both[:, N:] += results.direct(named, columns.inputs)
     if columns.inputs and (columns.P.any() or columns.c.any() or columns.E.any()):
         for order in (1, 2):
             along, of = columns.directions(order)

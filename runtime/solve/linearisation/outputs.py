@@ -16,10 +16,12 @@ from ...engine import OUTPUTS
 from ...errors import UnknownResultError, near
 from ...model.kinds import COUPLINGS
 from ...model.part_states import States, part_states
+from ...model.rope_states import moved
 from ...parts.kinds import KINDS
 from ...parts.paths import COMPONENTS, label_of
 from ...parts.scene_data import SceneData
 from ..statics.static_problem import StaticState
+from .inputs import Input, eliminated
 from .names import Coordinate
 
 STEP, RATE_STEP = 1e-3, 1e-7
@@ -32,11 +34,13 @@ SUPPORTS = {"pins", "clamps", "motions", "ties", "ropes"}
 class Directions:
     """k directions: changes of unknowns and, of what is prescribed, of dofs, of velocities and of accelerations.
 
-    unknowns (unknowns, k); dofs, rates, accelerations (n_dof, k); coordinates: x, x', x'' (3, coordinates, k).
+    unknowns (unknowns, k); dofs, prescribed, moved_dofs, all, rates, accelerations (n_dof, k); coordinates: x, x', x''
+    (3, coordinates, k).
     """
 
     unknowns: np.ndarray
     dofs: np.ndarray
+    moved_dofs: np.ndarray
     rates: np.ndarray
     accelerations: np.ndarray
     coordinates: np.ndarray
@@ -154,23 +158,72 @@ class Outputs:
                         found[row] += part[output.label][output.quantity][(slice(None), *output.entry)]
         return found
 
+    def direct(self, outputs: Sequence[Output], inputs: Sequence[Input]) -> np.ndarray:
+        """Return (outputs, inputs): derivatives of outputs by inputs with state and forces as they are."""
+        found = np.zeros((len(outputs), len(inputs)))
+        asked = [row for row, output in enumerate(outputs) if output.coordinate is None
+                 and output.label not in self.of_motion]
+        if not asked:
+            return found
+        for column, each in enumerate(inputs):
+            steps = [[(above - below) / (2 * side.step) for above, below in zip(
+                *(self._outputs_of(state, [outputs[row] for row in asked]) for state in (side.above, side.below)),
+                strict=True)] for side in each.sides]
+            if steps:
+                found[asked, column] = eliminated([np.array(step) for step in steps])
+        return found
+
+    def _outputs_of(self, static: StaticState, outputs: Sequence[Output]) -> list[float]:
+        """Return outputs at rest in a state with an input changed; reactions are part of the forces of the motion."""
+        engine, kept = static.engine, static.keep()
+        numbers = {kind: engine.static_outputs(kind)[None] for kind in OUTPUTS}
+        at = States.at_rest(kept["q"][None], kept["s"][None], engine.forces_in_motion()[None], numbers)
+        values = {label: part_states(static.model, static.scene, at, alone=label).by_label()[label]
+                  for label in {output.label for output in outputs}}
+        return [float(values[output.label][output.quantity][(0, *output.entry)]) for output in outputs]
+
     def _by_motion(self, labels: set[str], along: Directions) -> dict[str, dict[str, np.ndarray]]:
-        """Return the derivatives by positions, forces and accelerations."""
-        size = np.maximum(np.abs(self._spread(along)).max(axis=0, initial=0.0), np.finfo(float).tiny)
-        steps, needs, still = STEP / np.maximum(size, STEP), self._needs(labels), np.zeros(self.model.n_dof)
-        rows, rates, over = [], [], np.concatenate([steps, -steps, steps / 2, -steps / 2])
-        numbers: list[tuple[dict[str, np.ndarray], np.ndarray]] = []
-        for column, h in zip(np.tile(np.arange(along.count), 4), over, strict=True):
-            self._go(h * along.unknowns[:, column], h * along.dofs[:, column])
-            rates.append((still, h * along.accelerations[:, column]))
-            self.engine.set_rates(*rates[-1])
-            state = self.engine.state()
-            rows.append((state["q"], state["s"]))
-            numbers.append(self._numbers(needs))
-        self.static.restore(self.kept, prescribe=False)
-        at = self._results(labels, self._states(rows, rates, numbers))
-        n = along.count
-        return {label: {name: _richardson(values, n, steps) for name, values in of.items()} for label, of in at.items()}
+        """Return the derivatives by positions, forces and accelerations.
+
+        Results are linear in forces and accelerations: directions without a change of position take two states of four.
+        """
+        size = np.abs(self._spread(along)).max(axis=0, initial=0.0)
+        steps, needs = STEP / np.maximum(size, STEP), self._needs(labels)
+        parts = [self._differences(labels, needs, along, np.flatnonzero(size > 0), steps, (1.0, -1.0, 0.5, -0.5))]
+        others = (size == 0) & (along.unknowns.any(axis=0) | along.accelerations.any(axis=0))
+        parts.append(self._differences(labels, needs, along, np.flatnonzero(others), steps, (1.0, -1.0)))
+        found: dict[str, dict[str, np.ndarray]] = {}
+        for columns, of_labels in parts:
+            for label, of in of_labels.items():
+                for name, values in of.items():
+                    whole = found.setdefault(label, {}).setdefault(name, np.zeros((along.count, *values.shape[1:])))
+                    whole[columns] = values
+        return found
+
+    def _differences(self, labels: set[str], needs: tuple[list[str], bool], along: Directions, columns: np.ndarray,
+                     steps: np.ndarray, sides: Sequence[float]) -> tuple[np.ndarray, dict[str, dict[str, np.ndarray]]]:
+        """Return some columns and the derivatives in their directions, of states at these shares of the steps."""
+        if not len(columns):
+            return columns, {}
+        still, places, numbers = np.zeros(self.model.n_dof), [], []
+        over = np.concatenate([side * steps[columns] for side in sides])
+        number = np.tile(columns, len(sides))
+        dofs = over[:, None] * along.moved_dofs[:, number].T
+        accelerations = over[:, None] * along.accelerations[:, number].T
+        q = moved(self.model, self.kept["q"], dofs)
+        if any(needs):
+            for k, (column, h) in enumerate(zip(number, over, strict=True)):
+                self._go(h * along.unknowns[:, column], h * along.dofs[:, column])
+                self.engine.set_rates(still, accelerations[k])
+                places.append(self.engine.state()["s"])
+                numbers.append(self._numbers(needs))
+            self.static.restore(self.kept, prescribe=False)
+        else:
+            places = [self.kept["s"]] * len(over)
+        rates = [(still, each) for each in accelerations]
+        at = self._results(labels, self._states(list(zip(q, places, strict=True)), rates, numbers))
+        return columns, {label: {name: _derivative(values, len(columns), steps[columns]) for name, values in of.items()}
+                         for label, of in at.items()}
 
     def _by_rates(self, labels: set[str], along: Directions) -> dict[str, dict[str, np.ndarray]]:
         """Return the derivatives by velocities."""
@@ -262,8 +315,10 @@ def _over(steps: np.ndarray, values: np.ndarray) -> np.ndarray:
     return steps.reshape(-1, *[1] * (values.ndim - 1))
 
 
-def _richardson(values: np.ndarray, n: int, steps: np.ndarray) -> np.ndarray:
-    """Return derivatives from results at steps h, -h, h/2, -h/2 of n directions."""
+def _derivative(values: np.ndarray, n: int, steps: np.ndarray) -> np.ndarray:
+    """Return derivatives from results at steps h, -h and, if there are, h/2, -h/2 of n directions."""
     coarse = (values[:n] - values[n : 2 * n]) / (2 * _over(steps, values))
+    if len(values) == 2 * n:
+        return np.asarray(coarse)
     fine = (values[2 * n : 3 * n] - values[3 * n :]) / _over(steps, values)
     return np.asarray((4 * fine - coarse) / 3)

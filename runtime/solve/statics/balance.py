@@ -16,6 +16,10 @@ FORCE_ROUNDING = 1e-15
 """Rounding error of a force, as a fraction of the largest row sum of the stiffness; 9e-17 was measured."""
 
 
+NO_FORCE = 1e-20
+"""Residual force below which a state without loads and stiffness is in balance, N."""
+
+
 @dataclass(frozen=True)
 class Balance:
     """The residual forces on a scene as drawn: the largest in N, its place, and whether the scene is at rest."""
@@ -36,19 +40,20 @@ def balance(static: StaticState) -> Balance:
     balance the forces return to their former values, zero.
     """
     drawn = static.keep()
-    found = imbalance(static, balance_forces(static))
+    rows = coordinates_of(static.model)
+    found = imbalance(static, balance_forces(static)[rows][:, rows])
     if not found.at_rest:
         static.restore(drawn)
     return found
 
 
 def imbalance(static: StaticState, stiffness: csr_array) -> Balance:
-    """Return the residual of a static state with its present forces; stiffness: the tangent there."""
+    """Return the residual of a static state with its present forces; stiffness: the tangent over its coordinates."""
     rows, units = coordinates_of(static.model), units_of(static.weight, static.model)
     left = np.abs(static.residual()[rows]) / units
     load = np.max(np.abs(static.load_vector()[rows]) / units, initial=0.0)
-    sums = np.max(_size_of_sums(static, stiffness[rows][:, rows]) / units, initial=0.0)
-    at_rest = bool(np.all(left <= BALANCE_TOLERANCE * load + FORCE_ROUNDING * sums))
+    sums = np.max(_size_of_sums(static, stiffness) / units, initial=0.0)
+    at_rest = bool(np.all(left <= BALANCE_TOLERANCE * load + FORCE_ROUNDING * sums + NO_FORCE))
     most = int(np.argmax(left)) if len(left) else 0
     return Balance(float(np.max(left, initial=0.0)), place_of(static, rows, most), at_rest)
 
