@@ -63,9 +63,9 @@ if not _TYPE_CHECKING:  # type checkers read the imports, those of parts/listed.
                                 if not name.startswith("_") and not isinstance(value, _ModuleType))]
 
 LAZY = {"Choice": "choice.choice", "Equilibrium": "results.equilibrium", "InitialState": "model.initial_state",
-        "LogUniform": "sweeps.parameters", "Modes": "solve.modes.modes", "Simulation": "results.simulation",
-        "Uniform": "sweeps.parameters", "load_sweep": "sweeps.dataset", "read_moordyn": "exchange.moordyn",
-        "sweep": "sweeps.sweep", "sweep_cost": "sweeps.sweep"}
+        "LinearModel": "results.linear_model", "LogUniform": "sweeps.parameters", "Modes": "solve.modes.modes",
+        "Simulation": "results.simulation", "Uniform": "sweeps.parameters", "load_sweep": "sweeps.dataset",
+        "read_moordyn": "exchange.moordyn", "sweep": "sweeps.sweep", "sweep_cost": "sweeps.sweep"}
 """Modules of names whose imports (SciPy, xarray) take as long as all others, imported on first use."""
 
 

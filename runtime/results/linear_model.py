@@ -54,6 +54,7 @@ class LinearModel(Linearised):
             found = np.concatenate([roots, -roots])
         else:
             found = np.linalg.eigvals(self.A).astype(complex)
+        found = found + 0.0  # no -0
         return found[np.lexsort((-found.imag, -found.real, np.round(np.abs(found), 12)))]
 
     def response(self, frequency: ArrayLike | None = None, *, angular_frequency: ArrayLike | None = None) -> np.ndarray:
@@ -85,7 +86,7 @@ class LinearModel(Linearised):
         scipy.signal.
         """
         if find_spec("control") is not None:
-            import control
+            import control  # slow to import, where it is installed
 
             return control.ss(self.A, self.B, self.C, self.D, states=list(self.states), inputs=list(self.inputs),
                               outputs=list(self.outputs))

@@ -20,7 +20,14 @@ from ..errors import (
     near,
 )
 from ..parts.in_plane import in_plane
-from ..parts.settings import EquilibriumSettings, LinearSettings, ModeSettings, RelaxationSettings, RunSettings, overridden
+from ..parts.settings import (
+    EquilibriumSettings,
+    LinearSettings,
+    ModeSettings,
+    RelaxationSettings,
+    RunSettings,
+    overridden,
+)
 from ..parts.validation import show, shown
 from ..results.run import Run, raise_where_stopped
 from ..results.viewable import Viewable
@@ -443,10 +450,10 @@ class Scene(Viewable, DescribedScene):
 
         States are joint angles, displacements and s of slides where these determine the motion, else modal coordinates,
         and their rates; constraints are eliminated. Friction that sticks holds its coordinate. Raises SceneError, with
-        the residual force of a state that is not at rest, at a kink of forces, for inputs that are none, and for outputs
-        that depend on rates of an input; UnknownResultError for unknown outputs.
+        the residual force of a state that is not at rest, at a kink of forces, for inputs that are none, and for
+        outputs that depend on rates of an input; UnknownResultError for unknown outputs.
         """
-        names = [_names("linearise", kind, given) for kind, given in (("inputs", inputs), ("outputs", outputs))]
+        given, asked = _names("linearise", "inputs", inputs), _names("linearise", "outputs", outputs)
         settings = LinearSettings(reduce=reduce)
         state = None if about is None else _equilibrium_state(self, about)
         self.check()
@@ -459,7 +466,7 @@ class Scene(Viewable, DescribedScene):
         state = state if at_rest else self.equilibrium()
         scene = cast(Scene, state.scene) if state is not None and not at_rest and state.adjusted else self
         with uninterrupted(), one_blas_thread, enough_memory(), interruptible():
-            found = linearise(scene, *names, state, settings.reduce)
+            found = linearise(scene, given, asked, state, settings.reduce)
         return LinearModel.of(found, scene, state)
 
     def animation(self, title: str | None = None) -> Animation:

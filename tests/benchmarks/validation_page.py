@@ -13,7 +13,7 @@ the largest error of all elements, laws and integrators that it lists under `wit
 
 
 SUBJECTS = ("Elements", "Limits of elements", "Statics", "Modes", "Section forces", "Slides", "Bodies and mechanisms",
-            "Ropes with memory", "Contact", "Fluid", "Catenaries", "Machines")
+            "Ropes with memory", "Contact", "Fluid", "Catenaries", "Machines", "Linear models")
 """What `subject` of a row may be, in the order of the page. Limits: errors that an element keeps on any mesh."""
 
 

@@ -290,7 +290,8 @@ def modes_as_drawn(on: Asked) -> None:
 def linear_models(on: Asked) -> None:
     """All that loads or drives the scene acts on positions and forces of its parts."""
     scene = on.scene
-    inputs = ["gravity.x"] + [f"{name}.value.y" for name in scene.loads] + [f"{name}.velocity.x" for name in scene.fluids]
+    inputs = ["gravity.x", *(f"{name}.value.y" for name in scene.loads),
+              *(f"{name}.velocity.x" for name in scene.fluids)]
     inputs += [f"{part.name}.{drive}" for part in (*scene.joints.values(), *scene.slides.values())
                for drive in ("angle", "distance", "drive", "velocity") if getattr(part, drive, None) is not None]
     inputs += [f"{motion.label}.displacement.y" for motion in scene.motions
@@ -343,5 +344,5 @@ QUESTIONS: dict[str, Callable[[Asked], None]] = {question.__name__: question for
     motion, fixed_steps, from_rest, from_relaxed, from_another_run, from_arrays, named_quantities, on_threads, many,
     errors, saved, resumed, stepped, forces_in_sections, forces_at_a_slide, page_of_run, plots_of_run, film_of_run,
     files_for_paraview, picture_of_run, page_of_scene, plots, rest, forces_at_rest, page_of_rest, load_path,
-    loads_in_steps, relaxed, adjusted, modes_at_rest, modes_as_drawn, linear_models, text, schema, replaced, without_a_part,
-    remeshed, chosen, swept)}
+    loads_in_steps, relaxed, adjusted, modes_at_rest, modes_as_drawn, linear_models, text, schema, replaced,
+    without_a_part, remeshed, chosen, swept)}

@@ -109,7 +109,7 @@ def test_everything_it_announces_is_there():
 
 
 def test_the_package_completes_its_interface_alone():
-    lazy = {"Choice", "Equilibrium", "InitialState", "LogUniform", "Modes", "Simulation", "Uniform", "load_sweep",
-            "read_moordyn", "sweep", "sweep_cost"}
+    lazy = {"Choice", "Equilibrium", "InitialState", "LinearModel", "LogUniform", "Modes", "Simulation", "Uniform",
+            "load_sweep", "read_moordyn", "sweep", "sweep_cost"}
     assert {name for name in dir(fu) if not name.startswith("__")} == {*fu.__all__, *lazy} - {"__version__"}
     assert all(hasattr(fu, name) for name in dir(fu))

@@ -11,6 +11,7 @@ from funicular import catenary
 from funicular.model.initial_state import InitialState
 from funicular.results.equilibrium import Equilibrium
 from funicular.results.error_estimate import ErrorEstimate
+from funicular.results.linear_model import LinearModel
 from funicular.results.run import EnergyBalance, Run
 from funicular.results.viewable import Viewable
 from funicular.scene.described import DescribedScene
@@ -32,8 +33,8 @@ FUNCTIONS = ("load_scene", "load_run", "combine", "run_many", "sweep", "sweep_co
              "tapered", "read_moordyn")
 CLASSES: dict[str, tuple[type, ...]] = {
     "Scene": (funicular.Scene, DescribedScene), "Run": (Run,), "Equilibrium": (Equilibrium, RestState),
-    "Modes": (funicular.Modes,), "Simulation": (funicular.Simulation,), "Choice": (funicular.Choice,),
-    "Pictures": (Viewable,)}
+    "Modes": (funicular.Modes,), "Simulation": (funicular.Simulation,), "Linear model": (LinearModel,),
+    "Choice": (funicular.Choice,), "Pictures": (Viewable,)}
 """Titles of sections, and the classes whose methods they list; the first four have those of `Viewable`, too."""
 
 OTHERS = (InitialState, State, Stability, Relaxation, Adjustment, EnergyBalance, ErrorEstimate, SweepCost, Uniform,

@@ -59,7 +59,8 @@ def basis_of(equations: Equations, scene: SceneData, sticking: Sequence[str], re
         raise SceneError("linearise", f"the scene has {possible} degrees of freedom, reduce={reduce} were asked for",
                          f"take a number from 1 to {possible}, or leave it out")
     if reduce is None:
-        named = _minimal(equations, [each for each in of_parts(equations, scene) if each.name not in sticking], possible)
+        free = [each for each in of_parts(equations, scene) if each.name not in sticking]
+        named = _minimal(equations, free, possible)
         if named is not None:
             return named
         if possible > MAX_COORDINATES:

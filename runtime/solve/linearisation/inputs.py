@@ -10,12 +10,12 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...errors import FunicularWarning, SceneError
-from ...model.build import build
 from ...model.model import Model
 from ...parts.fluid import Fluid
 from ...parts.in_plane import in_plane
@@ -41,8 +41,8 @@ STEP = 1e-4
 """Of a value in which forces are not linear, over the larger of the value and one unit."""
 KINK_TOLERANCE = 1e-5
 """Error of a difference over the largest entry above which forces are not smooth in an input."""
-REMEDY = ("inputs are gravity, values and scales of loads, displacements and rotations of motions, drives of joints and "
-          "slides, and velocities of fluids")
+REMEDY = ("inputs are gravity, values and scales of loads, displacements and rotations of motions, drives of joints "
+          "and slides, and velocities of fluids")
 
 
 class Side(NamedTuple):
@@ -80,7 +80,8 @@ def inputs_of(static: StaticState, scene: SceneData, drawn: SceneData, names: Se
     paths = [path_of(drawn, name, USE) for name in names]
     values = [_value(drawn, path) for path in paths]
     check_each_once(paths)
-    return [_Differences(static, drawn, path, value, build_for).found() for path, value in zip(paths, values, strict=True)]
+    return [_Differences(static, drawn, path, value, build_for).found()
+            for path, value in zip(paths, values, strict=True)]
 
 
 def _value(scene: SceneData, path: Path) -> float:
@@ -220,12 +221,13 @@ def _romberg(difference: Callable[[float], tuple[np.ndarray, np.ndarray]], h: fl
     steps = [difference(h / 2**k) for k in range(3)]
     residual, c = (eliminated([step[k] for step in steps]) for k in range(2))
     error = np.max(np.abs(residual - (2 * steps[2][0] - steps[1][0])), initial=0.0)
-    if error > KINK_TOLERANCE * max(np.max(np.abs(residual), initial=0.0), np.max(np.abs(steps[0][0]), initial=0.0), 1.0):
+    size = max(np.max(np.abs(each), initial=0.0) for each in (residual, steps[0][0]))
+    if error > KINK_TOLERANCE * max(size, 1.0):
         raise _not_smooth(path)
     return residual, c
 
 
 def eliminated(steps: Sequence[np.ndarray]) -> np.ndarray:
     """Return a derivative from differences with steps h, h/2, h/4, without the terms of h and h²."""
-    coarse, fine = (2 * b - a for a, b in zip(steps, steps[1:], strict=False))
-    return (4 * fine - coarse) / 3
+    coarse, fine = (2 * b - a for a, b in pairwise(steps))
+    return np.asarray((4 * fine - coarse) / 3)

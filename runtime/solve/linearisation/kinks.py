@@ -7,6 +7,7 @@ order h at a kink, such as of a spring without compression at its stress-free le
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 
@@ -25,8 +26,7 @@ FORCE_ROUNDING = 1e-13
 
 
 def refuse_kinks(own: Equations, Z: np.ndarray) -> None:
-    """Raise SceneError where the forces on a coordinate, or those of a law, have a kink by motions Z (coordinates, n).
-    """
+    """Raise SceneError where forces on coordinates, or those of laws, have a kink by motions Z (coordinates, n)."""
     if not Z.size:
         return
     static, rows = own.static, np.concatenate([own.kept, own.laws])
@@ -39,15 +39,16 @@ def refuse_kinks(own: Equations, Z: np.ndarray) -> None:
     def residual(h: float) -> np.ndarray:
         static.restore(state, prescribe=False)
         static.move(h * change)
-        return static.residual()[rows]
+        return np.asarray(static.residual()[rows])
 
     stiffness = np.concatenate([abs(own.K) @ np.abs(along), abs(own.law_stiffness) @ np.abs(along)])
     at = _kink(residual, stiffness)
     static.restore(state, prescribe=False)
     if at is not None:
-        raise SceneError("linearise", f"forces have a kink at this state, largest on {_place(own, int(rows[at]))}: they "
-                         "change differently in the two directions of a motion, as of a spring without compression at "
-                         "its stress-free length or a contact that just touches", "linearise about a state beside it")
+        raise SceneError("linearise", f"forces have a kink at this state, largest on {_place(own, int(rows[at]))}: "
+                         "they change differently in the two directions of a motion, as of a spring without "
+                         "compression at its stress-free length or a contact that just touches",
+                         "linearise about a state beside it")
 
 
 def _place(own: Equations, unknown: int) -> str:
@@ -67,10 +68,9 @@ def _kink(residual: Callable[[float], np.ndarray], stiffness: np.ndarray) -> int
         above, below = residual(STEP / 2**k), residual(-STEP / 2**k)
         second.append(np.abs(above + below - 2 * here))
         first.append(np.abs(above - below) / 2)
-    noise = FORCE_ROUNDING * np.max(stiffness, initial=0.0) * 1e3 * STEP + FORCE_ROUNDING * np.max(np.abs(here), initial=0.0)
+    noise = FORCE_ROUNDING * max(np.max(stiffness, initial=0.0), np.max(np.abs(here), initial=0.0))
     large = np.all([each > MIN_SECOND_DIFFERENCE * size.max(initial=0.0) + noise
                     for each, size in zip(second, first, strict=True)], axis=0)
-    ratios = [coarse / np.maximum(fine, np.finfo(float).tiny)
-              for coarse, fine in zip(second, second[1:], strict=False)]
+    ratios = [coarse / np.maximum(fine, np.finfo(float).tiny) for coarse, fine in pairwise(second)]
     kinks = large & np.all([(RATIOS[0] < each) & (each < RATIOS[1]) for each in ratios], axis=0)
     return int(np.argmax(np.where(kinks, second[0], 0.0))) if kinks.any() else None

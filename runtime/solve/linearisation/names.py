@@ -22,7 +22,7 @@ FREE = {"revolute": ("angle",), "prismatic": ("distance",), "cylindrical": ("ang
 
 
 class Coordinate(NamedTuple):
-    """A coordinate: name and unit, those of its rate, and its row (coordinates,) over the unknowns that are coordinates."""
+    """A coordinate: name and unit, name of its rate, and its row (coordinates,) over all coordinates of the model."""
 
     name: str
     unit: str

@@ -155,7 +155,8 @@ class Outputs:
             if output.coordinate is None:
                 for part in (moved, speeds):
                     if output.quantity in part.get(output.label, {}):
-                        found[row] += part[output.label][output.quantity][(slice(None), *output.entry)]
+                        values = part[output.label][output.quantity]
+                        found[row] += values.reshape(along.count, -1)[:, _flat(values, output.entry)]
         return found
 
     def direct(self, outputs: Sequence[Output], inputs: Sequence[Input]) -> np.ndarray:
@@ -309,6 +310,11 @@ class Outputs:
         if numbers and len(numbers[0][1]):
             reaction = np.array([each[1] for each in numbers])
         return States(np.array([row[0] for row in rows]), v, a, np.array([row[1] for row in rows]), reaction, by_kind)
+
+
+def _flat(values: np.ndarray, entry: tuple[int, ...]) -> int:
+    """Return the number of an entry of results (k, ...) among those of one state."""
+    return int(np.ravel_multi_index(entry, values.shape[1:])) if entry else 0
 
 
 def _over(steps: np.ndarray, values: np.ndarray) -> np.ndarray:

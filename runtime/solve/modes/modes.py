@@ -125,7 +125,8 @@ def modes(scene: SceneData, n: int, about: RestState | None = None, as_drawn: bo
                      for x in vectors.T])
     found = _named(model, engine.state()["q"], np.where(np.abs(squares) <= error, 0.0, squares), dofs, error)
     found.messages += notes + _unstable(found, about, K, constraints, static)
-    found.messages += _without_friction(scene, stick) + _uncertain(found, np.sqrt(max(after, 0.0)), fewer_elements(model))
+    found.messages += _without_friction(scene, stick)
+    found.messages += _uncertain(found, np.sqrt(max(after, 0.0)), fewer_elements(model))
     for message in found.messages:
         warnings.warn(message, FunicularWarning, stacklevel=3)
     return found
