@@ -96,9 +96,9 @@ def linearise(drawn: SceneData, inputs: Sequence[str], outputs: Sequence[str], a
                       [*basis.names, *basis.rates, *more], [*basis.units, *basis.rate_units, *units],
                       [each.name for each in given], [each.unit for each in given],
                       np.array([each.value for each in given]), [each.name for each in named],
-                      [each.unit for each in named], results.values(named), basis.said,
+                      [each.unit for each in named], results.values(named, about), basis.said,
                       basis.squares if not np.any(basis.damping) and not more else None,
-                      _messages(scene, sticking, columns) + _stability(about))
+                      _messages(scene, sticking, stick, columns) + _stability(about))
 
 
 def _at_rest(scene: SceneData, model_of: Callable[[SceneData], Model], about: RestState | None) -> StaticState:
@@ -150,7 +150,7 @@ def _held(free: Equations, scene: SceneData, stick: bool) -> tuple[csr_array, li
     return rows, [each.name for each in held]
 
 
-def _messages(scene: SceneData, sticking: Sequence[str], columns: Columns) -> list[str]:
+def _messages(scene: SceneData, sticking: Sequence[str], stick: bool, columns: Columns) -> list[str]:
     """Return what the model holds, linearises or leaves out."""
     found = [f'friction holds "{name}", which has no part in the motion' for name in sticking]
     creeping = [f'"{name}"' for name, part in (scene.slides | scene.joints).items()
@@ -158,6 +158,14 @@ def _messages(scene: SceneData, sticking: Sequence[str], columns: Columns) -> li
     if creeping:
         found.append(f"regularised friction of {', '.join(creeping)} is linear in the speed, as below the velocity of "
                      "its law")
+    springs = [f'"{contact.name}"' for contact in scene.contacts.values() if contact.has_friction_spring
+               and contact.a not in scene.ropes]
+    if springs:
+        found.append(f"friction of {', '.join(springs)} holds points by springs that are stretched from the drawn "
+                     "position; in a run they begin without stretch, and points that slide in statics stick")
+    wraps = rough_sheaves(scene.ropes.values())
+    if wraps and not stick:
+        found.append(f"ropes slide on {', '.join(wraps)} as at a speed below the velocity of the law of friction")
     if any(fluid.waves is not None for fluid in scene.fluids.values()):
         found.append("the model leaves out the waves of fluids")
     return found + columns.messages

@@ -20,12 +20,17 @@ from ...model.rope_states import moved
 from ...parts.kinds import KINDS
 from ...parts.paths import COMPONENTS, label_of
 from ...parts.scene_data import SceneData
+from ..statics.rest_state import RestState
 from ..statics.static_problem import StaticState
 from .inputs import Input, eliminated
 from .names import Coordinate
 
 STEP, RATE_STEP = 1e-3, 1e-7
 """Largest change of a coordinate, m or rad, and of a rate, m/s or rad/s, of differences."""
+SMALL_STEP = 1e-7
+"""The same of positions for laws that are smooth at small distances alone, such as contact by penalty."""
+SMOOTH = {"bodies", "cables", "joints", "slides"}
+"""Groups whose results are smooth functions of positions, forces and accelerations."""
 SUPPORTS = {"pins", "clamps", "motions", "ties", "ropes"}
 """Groups whose results are reactions."""
 
@@ -130,12 +135,15 @@ class Outputs:
                           if quantity in each.results), "")
         return found
 
-    def values(self, outputs: Sequence[Output]) -> np.ndarray:
-        """Return the outputs (n,) at rest; coordinates of joints are zero there."""
-        return np.array([self._value(output) for output in outputs])
+    def values(self, outputs: Sequence[Output], about: RestState | None) -> np.ndarray:
+        """Return the outputs (n,) at rest, of a state or as drawn; coordinates of joints are zero there."""
+        return np.array([self._value(output, about) for output in outputs])
 
-    def _value(self, output: Output) -> float:
+    def _value(self, output: Output, about: RestState | None) -> float:
         if output.coordinate is None:
+            name = f"{output.label}.{output.quantity}"
+            if about is not None and name in about.quantities:
+                return float(about.quantities[name][output.entry])
             return float(self.base[output.label][output.quantity][(0, *output.entry)])
         label, _, quantity = output.name.rpartition(".")
         return float(self.base[label][quantity][0]) if quantity == "s" else 0.0
@@ -149,7 +157,9 @@ class Outputs:
         labels = {output.label for output in outputs if output.coordinate is None}
         if not labels or not along.count:
             return found
-        moved = self._by_motion(labels, along)
+        kinked = self._labels_of_kinked_laws(labels)
+        moved = {label: of for each, step in ((labels - kinked, STEP), (kinked, SMALL_STEP)) if each
+                 for label, of in self._by_motion(each, along, step).items()}
         speeds = self._by_rates(labels, along)
         for row, output in enumerate(outputs):
             if output.coordinate is None:
@@ -158,6 +168,14 @@ class Outputs:
                         values = part[output.label][output.quantity]
                         found[row] += values.reshape(along.count, -1)[:, _flat(values, output.entry)]
         return found
+
+    def _labels_of_kinked_laws(self, labels: set[str]) -> set[str]:
+        """Return the labels whose results come from laws that change at small distances, as where contact ends."""
+        scene = self.scene
+        segments = any(getattr(force, "has_segments", False) for force in scene.point_forces.values())
+        has_kinks = segments or bool(scene.contacts or scene.crossings or scene.ropes)
+        smooth = SMOOTH if has_kinks else SMOOTH | SUPPORTS
+        return labels - {label_of(part) for part in scene.parts() if part.group in smooth}
 
     def direct(self, outputs: Sequence[Output], inputs: Sequence[Input]) -> np.ndarray:
         """Return (outputs, inputs): derivatives of outputs by inputs with state and forces as they are."""
@@ -183,13 +201,13 @@ class Outputs:
                   for label in {output.label for output in outputs}}
         return [float(values[output.label][output.quantity][(0, *output.entry)]) for output in outputs]
 
-    def _by_motion(self, labels: set[str], along: Directions) -> dict[str, dict[str, np.ndarray]]:
-        """Return the derivatives by positions, forces and accelerations.
+    def _by_motion(self, labels: set[str], along: Directions, step: float) -> dict[str, dict[str, np.ndarray]]:
+        """Return the derivatives by positions, forces and accelerations; step: the largest change of a coordinate.
 
         Results are linear in forces and accelerations: directions without a change of position take two states of four.
         """
         size = np.abs(self._spread(along)).max(axis=0, initial=0.0)
-        steps, needs = STEP / np.maximum(size, STEP), self._needs(labels)
+        steps, needs = step / np.maximum(size, step), self._needs(labels)
         parts = [self._differences(labels, needs, along, np.flatnonzero(size > 0), steps, (1.0, -1.0, 0.5, -0.5))]
         others = (size == 0) & (along.unknowns.any(axis=0) | along.accelerations.any(axis=0))
         parts.append(self._differences(labels, needs, along, np.flatnonzero(others), steps, (1.0, -1.0)))
