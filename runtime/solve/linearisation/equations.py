@@ -44,7 +44,7 @@ class Equations:
 
     @property
     def model(self) -> Model:
-        """Return the model."""
+        """Return the model of the static state."""
         return self.static.model
 
     @cached_property
@@ -59,10 +59,6 @@ class Equations:
     def over_coordinates(self, residual: np.ndarray) -> np.ndarray:
         """Return a change of the residual (unknowns, k) over the coordinates, with forces by laws eliminated."""
         return np.asarray(residual[self.kept] - self.by_laws @ residual[self.laws])
-
-    def stiff(self, coordinate: int) -> bool:
-        """Return whether anything resists a motion along a coordinate."""
-        return bool(abs(self.K[:, [coordinate]]).sum() > 0)
 
 
 def equations(static: StaticState, held: csr_array | None = None) -> Equations:

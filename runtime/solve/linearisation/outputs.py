@@ -52,7 +52,7 @@ class Directions:
 
     @property
     def count(self) -> int:
-        """Return their number."""
+        """Return the number of directions."""
         return int(self.unknowns.shape[1])
 
 
