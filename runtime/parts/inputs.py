@@ -25,7 +25,7 @@ S = TypeVar("S", bound=SceneData)
 INPUTS: dict[type[Part], tuple[str, ...]] = {
     Load: ("value", "scale"), Fluid: ("velocity", "scale"), Slide: ("drive", "velocity"),
     Joint: ("angle", "distance", "velocity"), Wheel: ("torque", "angle", "velocity"),
-    Motion: ("displacement",)}
+    Motion: ("displacement", "rotation")}
 """The entries of parts that can be inputs: loads, drives, motions, velocities of fluids."""
 VECTORS = "value", "velocity"
 """The entries whose components are inputs."""

@@ -17,10 +17,10 @@ import numpy as np
 
 from ...errors import FunicularWarning, SceneError
 from ...model.model import Model
-from ...parts.fluid import Fluid
 from ...parts.in_plane import in_plane
+from ...parts.inputs import INPUTS
 from ...parts.joint import Joint
-from ...parts.load import DistributedForce, Force, Moment
+from ...parts.load import Load
 from ...parts.part import Part
 from ...parts.paths import COMPONENTS, GRAVITY, Path, Variants, check_each_once, path_of, unit_of, value_at
 from ...parts.scene_data import SceneData
@@ -30,13 +30,6 @@ from ...parts.support import Motion
 from ..statics.static_problem import StaticState, without_waves
 
 USE = "linearise"
-LINEAR: tuple[type[Part], ...] = (Force, DistributedForce, Moment)
-"""Parts whose forces are linear in their values."""
-ENTRIES: dict[type[Part], tuple[str, ...]] = {
-    Force: ("value", "scale"), DistributedForce: ("value", "scale"), Moment: ("value", "scale"),
-    Motion: ("displacement", "rotation"), Joint: ("angle", "distance", "velocity"), Slide: ("drive", "velocity"),
-    Fluid: ("velocity", "scale")}
-"""Entries that are inputs, by kind of part."""
 STEP = 1e-4
 """Of a value in which forces are not linear, over the larger of the value and one unit."""
 KINK_TOLERANCE = 1e-5
@@ -87,7 +80,7 @@ def inputs_of(static: StaticState, scene: SceneData, drawn: SceneData, names: Se
 def _value(scene: SceneData, path: Path) -> float:
     """Return the value at t = 0 of an input. Raises SceneError for what is none."""
     part = None if path.part is None else [*scene.parts()][path.part]
-    known = next((entries for kind, entries in ENTRIES.items() if isinstance(part, kind)), ())
+    known = next((entries for kind, entries in INPUTS.items() if isinstance(part, kind)), ())
     if (path.head != GRAVITY if part is None else path.entries[0] not in known):
         what = f"{path.head} is a setting" if part is None else f"{path.entries[0]} of a {part.kind} is no input"
         raise SceneError(path.where, what, REMEDY)
@@ -131,7 +124,7 @@ class _Differences:
             rate_of = self._signals_at(1.0)
             residual, c = _romberg(lambda h: self._held(rate_of, h), STEP, self.path)
             return Input(self.path.text, unit or self._rate_unit(part), self.value, residual, c, True, True)
-        if isinstance(part, LINEAR):
+        if isinstance(part, Load):
             residual = self._changed(1.0).residual() - self.static.residual()
             return Input(self.path.text, unit, self.value, residual, np.zeros(self._n_dof))
         if part is None and not (self.drawn.contacts or self.drawn.drags):  # stiffness of contacts, buoyancy
