@@ -129,16 +129,6 @@ NO_TIME = FU_NO_TIME
 """Time of the last step in a state as drawn, s."""
 
 
-cdef const void *_found(list tables, str role, str name) except NULL:
-    """Return the kernels of a role by name, from the first of the tables (addresses) with them."""
-    cdef const void *entry
-    for address in tables:
-        entry = fu_find(<const fu_tables *><size_t>address, role.encode(), name.encode())
-        if entry != NULL:
-            return entry
-    raise ValueError(f"no kernels for the {role} {name}")
-
-
 cdef double _call(void *context, int which, const fu_state *state) noexcept with gil:
     """Call the function of a user's event; the engine keeps an exception until it returns."""
     engine = <Engine>context
@@ -157,9 +147,10 @@ include "engine/cython/translation.pxi"
 include "engine/cython/statics.pxi"
 include "engine/cython/linear_model.pxi"
 include "engine/cython/report.pxi"
+include "engine/cython/packed.pxi"
 
 
-cdef class Engine(Report):
+cdef class Engine(Packable):
     """One run of a model (model/model.py).
 
     blocks: use kernels of several elements at once where they exist.
@@ -280,15 +271,13 @@ cdef class Engine(Report):
             self.breakpoints[i].t, self.breakpoints[i].jumps = time, jump
         self.run.n_breakpoints, self.run.breakpoints = len(times), self.breakpoints
 
-    def start(self, *, duration, output_step, tol, step, method, first_step, breakpoints=((), ()), capacity=None,
-              rest_start=False, absolute_tol=0.0, controlled=None):
-        """Allocate output rows, `capacity` of them or all, and compute the consistent start; method: one of integrators/.
+    def make_ready(self, *, duration, output_step, tol, step, method, first_step, breakpoints=((), ()), capacity=None,
+                   rest_start=False, absolute_tol=0.0, controlled=None):
+        """Take the settings of a run and allocate output rows, `capacity` of them or all; method: one of integrators/.
 
         breakpoints: times at which steps end, and what jumps there (model/breakpoints.py). absolute_tol in m, negative: by
         the scene's size. controlled: two arrays of weights (n_dof,), for the error that tol bounds and for all errors that
-        count; by default the model's weights.
-        Returns a status for a failed start, else None, and the change of velocities by the joints. Raises RuntimeError in
-        a second call.
+        count; by default the model's weights. Raises RuntimeError in a second call.
         """
         cdef int k
         cdef fu_array array
@@ -313,6 +302,15 @@ cdef class Engine(Report):
         output = self.arrays.pop("output")
         for kind in OUTPUTS:
             self.arrays[kind] = self._outputs(kind, output)
+
+    def start(self, **settings):
+        """Take the settings of `make_ready`, and compute the consistent start.
+
+        Returns a status for a failed start, else None, and the change of velocities by the joints. Raises RuntimeError in
+        a second call.
+        """
+        self.make_ready(**settings)
+        run, m = &self.run, &self.model
         cdef int status = fu_start(run)
         if status:
             return STATUS[status], np.zeros(m.n_dof)

@@ -322,6 +322,30 @@ def import_file(
 
 
 @app.command()
+def export(
+    kind: Annotated[str, typer.Argument(metavar="KIND", help="c: a program in C11")],
+    scene: SceneName,
+    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="to write, new, empty or of an earlier export")],
+    duration: Duration = None,
+    tol: Tolerance = None,
+    step: Annotated[float | None, typer.Option(help="fixed step in s, instead of the scene's")] = None,
+    output_step: Annotated[float | None, typer.Option(help="s, instead of the scene's")] = None,
+    integrator: Integrator = None,
+    spectral_radius: Annotated[float | None, typer.Option(help="of genalpha and energy")] = None,
+    library: Libraries = None,
+) -> None:
+    """Write the run of a scene as a program that needs no Python."""
+    if kind != "c":
+        raise typer.BadParameter(f"{kind!r}: scenes are exported as c")
+    made = load_scene(scene, library or ()).export_c(folder, duration, tol=tol, step=step, output_step=output_step,
+                                                     integrator=integrator, spectral_radius=spectral_radius)
+    for note in made.messages:
+        print(f"note: {note}", file=sys.stderr)
+    print(f"written: {made.folder}: integrator {made.integrator}, {len(made.values)} values a row; make builds the "
+          "example")
+
+
+@app.command()
 def scenes() -> None:
     """List the bundled scenes."""
     for name, path in bundled_scenes().items():

@@ -13,7 +13,7 @@ cdef class Arrays:
     Their total size is limited to the memory of the machine: a system that overcommits would end the process later.
     """
 
-    cdef list named
+    cdef list named, blocks  # blocks: address and size in bytes of all memory
     cdef readonly dict arrays
     cdef double bytes_allocated
     cdef void **chunks
@@ -22,7 +22,7 @@ cdef class Arrays:
     cdef char *at
 
     def __cinit__(self, *args, **kwargs):
-        self.named, self.arrays, self.bytes_allocated = [], {}, 0.0
+        self.named, self.blocks, self.arrays, self.bytes_allocated = [], [], {}, 0.0
 
     def __dealloc__(self):
         cdef size_t k
@@ -53,7 +53,9 @@ cdef class Arrays:
             raise MemoryError
         self.chunks[self.n_chunks], self.sizes[self.n_chunks] = begin, size + ALIGNED
         self.n_chunks += 1
-        return begin + ALIGNED - <size_t>begin % ALIGNED
+        begin += ALIGNED - <size_t>begin % ALIGNED
+        self.blocks.append((<size_t>begin, size))
+        return begin
 
     cdef void *_memory(self, double size) except NULL:
         """Return memory of this size in bytes, zeros."""
@@ -100,5 +102,6 @@ cdef class Arrays:
         array = np.zeros(max(1, size))
         cdef double[::1] view = array
         self.named.append(array)
+        self.blocks.append((<size_t>&view[0], <size_t>array.nbytes))
         self.arrays[name] = array[:size].reshape(shape)
         return &view[0]

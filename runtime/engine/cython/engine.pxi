@@ -40,6 +40,8 @@ cdef extern from * nogil:
     #include "events/events.h"
     #include "events/list.h"
     #include "events/slack_cables.h"
+    #include "host/funicular.h"
+    #include "host/packed.h"
     #include "integrators/list.h"
     #include "run/run.h"
     """
@@ -141,6 +143,7 @@ cdef extern from * nogil:
                         const double *acceleration, const void *work, double *out)
     ctypedef struct fu_coupling:
         const fu_coupling_type *type
+        const void *events
         int index, number, unknown, n_coordinates, coordinate, n_forces, force, n_multipliers, multiplier, row, output
         int numbers, n_numbers
     void fu_contact_densities(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *out)
@@ -394,3 +397,38 @@ cdef extern from * nogil:
     int fu_stop(fu_run *run)
     int fu_take_deferred(fu_run *run)
     void fu_part_timing(fu_run *run, double *seconds)
+    int FU_PACKED_VERSION, FU_PACKED_ALIGNMENT
+    const char *FU_PACKED_MAGIC
+    const fu_lapack fu_plain_lapack
+    unsigned int fu_packed_layout()
+    ctypedef struct fu_linked:
+        const char *role
+        const char *name
+        const void *entry
+    ctypedef struct fu_registry:
+        const unsigned char *digest
+        const fu_linked *kernels
+        const fu_lapack *lapack
+    enum: FUNICULAR_MESSAGE
+    ctypedef struct funicular_scene:
+        const void *bytes
+        size_t size
+        const void *registry
+    ctypedef struct funicular:
+        pass
+    funicular *funicular_open(const funicular_scene *scene, void *memory, char *message)
+    void funicular_close(funicular *f)
+    int funicular_step(funicular *f)
+    int funicular_advance(funicular *f, double time)
+    double funicular_time(const funicular *f)
+    const char *funicular_message(const funicular *f)
+    int funicular_count(const funicular *f)
+    int funicular_find(const funicular *f, const char *name)
+    const char *funicular_name(const funicular *f, int reference)
+    const char *funicular_unit(const funicular *f, int reference)
+    int funicular_get(funicular *f, const int *references, size_t n, double *values)
+    int funicular_set(funicular *f, const int *references, size_t n, const double *values)
+    size_t funicular_saved(const funicular *f)
+    int funicular_pause_rows(const funicular *f)
+    int funicular_save(funicular *f, void *bytes)
+    int funicular_restore(funicular *f, const void *bytes, size_t size)

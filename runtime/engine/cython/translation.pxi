@@ -30,8 +30,10 @@ cdef class Translation(Arrays):
     cdef object newton_elimination
     cdef dict static_forces  # by kind of coupling: largest number of internal forces in static states
     cdef dict numbers  # of the couplings of each kind
+    cdef dict kernels  # role and name of the tables of kernels that the structures point to, by address
 
     def __cinit__(self, model, blocks=True):
+        self.kernels = {}
         self.cables = <fu_cable *>PyMem_Calloc(len(model.cables) + 1, sizeof(fu_cable))
         self.bodies = <fu_body *>PyMem_Calloc(len(model.bodies) + 1, sizeof(fu_body))
         self.shapes = <fu_shape *>PyMem_Calloc(len(model.bodies) + 1, sizeof(fu_shape))
@@ -44,6 +46,13 @@ cdef class Translation(Arrays):
         if not (self.cables and self.bodies and self.shapes and self.motions and self.signals and self.couplings
                 and self.coupling_memory):
             raise MemoryError
+        self.blocks += [(<size_t>self.cables, (len(model.cables) + 1) * sizeof(fu_cable)),
+                        (<size_t>self.bodies, (len(model.bodies) + 1) * sizeof(fu_body)),
+                        (<size_t>self.shapes, (len(model.bodies) + 1) * sizeof(fu_shape)),
+                        (<size_t>self.motions, (len(model.motions) + 1) * sizeof(fu_motion)),
+                        (<size_t>self.signals, (len(model.signals) + 1) * sizeof(fu_signal)),
+                        (<size_t>self.couplings, (len(model.couplings) + 1) * sizeof(fu_coupling *)),
+                        (<size_t>self.coupling_memory, <size_t>self.coupling_bytes)]
 
     def __dealloc__(self):
         fu_threads_end(self.model.threads)
@@ -71,12 +80,22 @@ cdef class Translation(Arrays):
         m.gravity, m.zero = self._doubles(model.gravity), self._zeros(model.n_dof)
         self._work_space(model)
 
+    cdef const void *_found(self, list tables, str role, str name) except NULL:
+        """Return the kernels of a role by name, from the first of the tables (addresses) with them."""
+        cdef const void *entry
+        for address in tables:
+            entry = fu_find(<const fu_tables *><size_t>address, role.encode(), name.encode())
+            if entry != NULL:
+                self.kernels[<size_t>entry] = role, name
+                return entry
+        raise ValueError(f"no kernels for the {role} {name}")
+
     def _bodies_and_cables(self, model, list tables, blocks):
         cdef int i, k, numbers = 0
         for i, cable in enumerate(model.cables):
             c = &self.cables[i]
-            c.kernel = <const fu_element_kernels *>_found(tables, "element", cable.element)
-            c.law = <const fu_law_kernels *>_found(tables, "law", f"{cable.element}_{cable.law}")
+            c.kernel = <const fu_element_kernels *>self._found(tables, "element", cable.element)
+            c.law = <const fu_law_kernels *>self._found(tables, "law", f"{cable.element}_{cable.law}")
             c.blocks = fu_blocks_of(c.law.name) if blocks and cable.library is None else NULL
             mesh = cable.mesh
             c.n_elements, c.first, c.length = mesh.n_elements, cable.first, mesh.mean
@@ -106,7 +125,7 @@ cdef class Translation(Arrays):
             c.dissipation_state, numbers = numbers, numbers + c.n_elements * (c.law.rates + 1)
         for i, body in enumerate(model.bodies):
             r = &self.bodies[i]
-            r.kernel = <const fu_body_kernels *>_found(tables, "body", body.kernel)
+            r.kernel = <const fu_body_kernels *>self._found(tables, "body", body.kernel)
             r.configuration, r.dof, r.mass = body.configuration, body.dof, body.mass
             r.matter, r.modes, r.shape = &fu_rigid_matter, 0, NULL
             for k in range(9):
@@ -129,7 +148,7 @@ cdef class Translation(Arrays):
         shape, n = body.shape, body.modes
         cdef int k
         r.matter, r.modes, r.shape = &fu_modal_matter, n, h
-        h.kernel = <const fu_modal_kernels *>_found(tables, "modal", body.modal_kernel)
+        h.kernel = <const fu_modal_kernels *>self._found(tables, "modal", body.modal_kernel)
         h.S, h.X = self._doubles(shape.S), self._doubles(shape.X)
         h.mass = self._doubles(np.einsum("klii->kl", shape.X)[1:, 1:])
         h.stiffness, h.damping = self._doubles(shape.stiffness), self._doubles(shape.damping)
@@ -172,7 +191,7 @@ cdef class Translation(Arrays):
         to.cable, to.body, to.element, to.slide, to.node = end.cable, end.body, end.element, end.slide, end.node
         to.frame, to.rope = NULL, NULL
         if end.span is not None:
-            to.rope = <const fu_rope_point_kernels *>_found(tables, "rope_point", end.rope_point)
+            to.rope = <const fu_rope_point_kernels *>self._found(tables, "rope_point", end.rope_point)
             to.node, to.span_elements, to.material = end.span.first, end.span.n_elements, end.material
             to.share = self._doubles(end.span.share)
             for k in range(2):
@@ -186,7 +205,7 @@ cdef class Translation(Arrays):
         if end.axes is None:
             return 0
         if end.frame:
-            to.frame = <const fu_frame_kernels *>_found(tables, "frame", end.frame)
+            to.frame = <const fu_frame_kernels *>self._found(tables, "frame", end.frame)
         for k in range(2):
             to.slopes[k] = end.slopes[k]
         for k in range(3):
@@ -259,7 +278,7 @@ cdef class Translation(Arrays):
             self._end(<fu_attachment *>to, value, tables)
         elif field.kind == FU_KERNELS:
             role = type if field.words == NULL else field.words[0].decode()
-            (<const void **>to)[0] = _found(tables, role, value) if value else NULL
+            (<const void **>to)[0] = self._found(tables, role, value) if value else NULL
         elif field.kind == FU_WORD:
             k = 0
             while field.words[k] != NULL and field.words[k] != <bytes>value.encode():

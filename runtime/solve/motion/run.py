@@ -286,21 +286,7 @@ def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine
            capacity: int | None) -> tuple[str | None, list[str], np.ndarray]:
     """Start the engine; return the status where the run has ended, else None. Raises SceneError for a singular start.
     """
-    if method.is_linear:
-        from .linear_model import take_linear_model  # loads SciPy, which other runs do without
-
-        take_linear_model(engine, scene, model)
-    status, change = engine.start(
-        duration=settings.duration,
-        output_step=settings.output_step,
-        tol=tol,
-        step=settings.step or 0.0,
-        **_control(settings, scene, model),
-        method=method,
-        first_step=min(settings.output_step, 1e-3 * settings.duration),
-        breakpoints=breakpoints_of(model, settings, method, tol),
-        capacity=capacity,
-    )
+    status, change = engine.start(**_for_engine(scene, settings, model, engine, method, tol), capacity=capacity)
     if status == "singular" and engine.self_locking >= 0:
         slide = scene.slides[model.couplings[engine.self_locking].name]
         raise SceneError(slide.where, "friction is self-locking at the start: the larger it is, the harder it presses "
@@ -312,6 +298,42 @@ def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine
     closed = engine.closed > 1e-9 * engine.extent
     gaps = [f"gaps of joints were closed at the start: things moved by up to {engine.closed:.3g} m"] * closed
     return status, gaps, change
+
+
+def _for_engine(scene: SceneData, settings: RunSettings, model: Model, engine: Engine, method: Integrator,
+                tol: float) -> dict[str, Any]:
+    """Return the settings of a run for the engine, which takes a linear model here where the method needs one."""
+    if method.is_linear:
+        from .linear_model import take_linear_model  # loads SciPy, which other runs do without
+
+        take_linear_model(engine, scene, model)
+    return {"duration": settings.duration, "output_step": settings.output_step, "tol": tol,
+            "step": settings.step or 0.0, **_control(settings, scene, model), "method": method,
+            "first_step": min(settings.output_step, 1e-3 * settings.duration),
+            "breakpoints": breakpoints_of(model, settings, method, tol)}
+
+
+class ReadyRun(NamedTuple):
+    """A run before its start: its integrator, the reason for that, and the rows between its pauses."""
+
+    model: Model
+    engine: Engine
+    event_handler: EventHandler
+    method: Integrator
+    reason: str
+    every: int
+
+
+def made_ready(scene: SceneData, settings: RunSettings, initial: Start | None = None) -> ReadyRun:
+    """Return a run of a checked scene as `simulate` starts it, with room for one row; of an integrator to be chosen the
+    first choice. Raises SceneError.
+    """
+    model, engine, event_handler, _ = _prepared(scene, settings, initial)
+    blocks = row_blocks(int(np.ceil(settings.duration / settings.output_step)) + 1, engine.row_bytes)
+    method, reason, _ = choose(settings, scene, model, engine, None)
+    tol = tol_of(settings, scene, method)
+    engine.make_ready(**_for_engine(scene, settings, model, engine, method, tol), capacity=1)
+    return ReadyRun(model, engine, event_handler, method, reason, blocks.every)
 
 
 def _control(settings: RunSettings, scene: SceneData, model: Model) -> dict[str, Any]:

@@ -1,0 +1,1 @@
+"""Scenes as programs in C: packed scenes, and folders with their sources."""
