@@ -46,7 +46,8 @@ if [ $# -eq 0 ]; then
     tests/motion/test_{drums,ropes,ropes_in_space}.py::test_energy_and_the_agreement_of_integrators \
     tests/motion/test_sticking_ropes.py::test_energy_and_the_agreement_of_integrators_where_ropes_stick \
     tests/results/test_streaming.py::test_every_integrator_goes_on_exactly \
-    tests/results/test_damaged_files.py::test_forged_states_are_refused_or_run
+    tests/results/test_damaged_files.py::test_forged_states_are_refused_or_run \
+    tests/export/test_exported_c.py::test_forged_bytes_are_refused
 fi
 "$python" -m pytest -p no:cacheprovider -x "$@"
 printf 'passed after %d s\n' "$SECONDS"

@@ -12,6 +12,7 @@
 #include <string.h>
 
 #define ROW_TOLERANCE 1e-9 /* of the output step */
+#define MAX_MEMORY_BITS 38 /* of the bytes of a run: beyond them its head is forged */
 #define TOO_LARGE "the machine has too little memory for the scene: take fewer elements"
 
 struct funicular {
@@ -62,7 +63,7 @@ size_t funicular_memory(const funicular_scene *scene, char *message)
 {
     fu_parts parts;
     if (refused(fu_packed_parts(scene->bytes, scene->size, registry_of(scene)->digest, &parts), message)) return 0;
-    if (parts.head->memory > SIZE_MAX / 2) {
+    if (parts.head->memory > SIZE_MAX / 2 || parts.head->memory >> MAX_MEMORY_BITS) {
         refused(TOO_LARGE, message);
         return 0;
     }
