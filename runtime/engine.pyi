@@ -1,7 +1,7 @@
 """Types of the compiled engine; what its members do is said in engine.pyx."""
 
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,6 +10,7 @@ from scipy.sparse import csr_array
 from .integrators.integrator import Integrator
 from .model.model import Model
 
+Image: TypeAlias = tuple[bytearray, list[tuple[int, int]], list[tuple[float, int]], dict[str, np.ndarray]]
 STATUS: dict[int, str]
 CAUSES: dict[int, str | None]
 COUPLING_TYPES: tuple[str, ...]
@@ -166,5 +167,5 @@ class SteppedEngine(Engine):
     def set_signal(self, number: int, since: float, coefficients: Sequence[float]) -> None: ...
     def signal_at(self, number: int) -> tuple[float, float]: ...
     def jump(self, of_rates: bool) -> None: ...
-    def image(self) -> tuple[bytearray, int, list[tuple[float, int]], dict[str, np.ndarray]]: ...
-    def take_image(self, image: tuple[bytearray, int, list[tuple[float, int]], dict[str, np.ndarray]]) -> None: ...
+    def image(self) -> Image: ...
+    def take_image(self, image: Image) -> None: ...

@@ -356,12 +356,11 @@ class Scene(Viewable, DescribedScene):
     ) -> Exported:
         """Write the run of this scene as a program in C11 to a folder, which is new, empty, or of an earlier export.
 
-        The settings are those of `run`; "auto" takes the first choice of an integrator, without a trial. The folder has
-        the engine, the kernels of this scene, the packed scene, the interface ``funicular.h``, an example ``main.c``,
-        ``Makefile`` and ``CMakeLists.txt``. The program needs libc, libm and threads alone. Its rows are those of `run`
-        with the same integrator, bit for bit on one machine where compilers contract no operations and the run calls no
-        LAPACK, otherwise up to rounding. Returns `Exported`: the values of a row by name, and the results that have
-        none in C.
+        The settings are those of `run`. The folder has the engine, the kernels of this scene, the packed scene,
+        the interface ``funicular.h``, an example ``main.c``, ``Makefile`` and ``CMakeLists.txt``. The program
+        needs libc, libm and threads alone. Its rows are those of `run`, bit for bit on one machine where
+        compilers contract no operations and the run calls no LAPACK, otherwise up to rounding. Returns
+        `Exported`: the values of a row by name, and the results that have none in C.
 
         Raises SceneError for what C cannot run: functions of events, loads and friction that events switch, elements of
         a library of the user.

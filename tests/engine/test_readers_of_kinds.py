@@ -22,6 +22,8 @@ PLACES = {
         "results/resume_facts.py", "solve/motion/event_handler.py", "solve/notes/coarse_slides.py",
         "solve/notes/uncontrolled_errors.py", "solve/statics/relaxation.py", "solve/statics/rest_state.py",
         "solve/statics/static_problem.py"],
+    "coordinates of slides and joints as states of a linear model, contact that a search for rest has resolved": [
+        "solve/linearisation/equations.py", "solve/linearisation/linearise.py", "solve/linearisation/names.py"],
     "joints close loops, in which equations are redundant; their ends and angles are prescribed": [
         "model/redundant_constraints.py", "solve/adjustment/change.py", "solve/notes/sensitivity.py",
         "solve/statics/turns.py"],
@@ -30,7 +32,7 @@ PLACES = {
         "results/section_forces/nodal_forces.py"],
     "an instant or a frequency of fluids: their signals, tables and added mass": [
         "model/drag_forces.py", "model/breakpoints.py", "results/section_forces/balance_limits.py",
-        "solve/statics/string_start.py"],
+        "solve/motion/stepping.py", "solve/statics/string_start.py"],
     "forces of branches and working curves within elements, which a balance does not know": [
         "results/section_forces/balance_limits.py"],
     "highest strains of ropes in a state": ["model/initial_state.py"],
@@ -59,7 +61,8 @@ PLACES = {
 
 SCENE_PLACES = {
     "friction": [
-        "choice/indicators.py", "results/rope_tensions.py", "solve/modes/modes.py", "solve/motion/integrator_choice.py",
+        "choice/indicators.py", "results/rope_tensions.py", "solve/linearisation/linearise.py", "solve/modes/modes.py",
+        "solve/motion/integrator_choice.py",
         "solve/notes/creep.py", "solve/notes/uncontrolled_errors.py", "solve/statics/static.py",
         "solve/statics/sticking_ropes.py"],
     "points that move along a cable: slides and crossings": [
@@ -73,6 +76,8 @@ SCENE_PLACES = {
     "connections of bodies by joints": [
         "solve/notes/coarse_meshes.py", "solve/notes/coincident_points.py", "solve/notes/sensitivity.py",
         "solve/statics/turns.py"],
+    "joints that are coordinates, and parts with kinks of their forces": [
+        "solve/linearisation/names.py", "solve/linearisation/outputs.py"],
     "surfaces, and depths below them": [
         "solve/notes/penetrations.py", "solve/notes/surface_ends.py", "solve/notes/coarse_contact.py",
         "solve/statics/lying.py", "solve/statics/string_start.py"],

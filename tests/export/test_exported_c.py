@@ -10,15 +10,11 @@ import numpy as np
 import pytest
 from funicular.engine import PackedRun
 from funicular.export.image import COVERED_FROM, DIGEST_AT, HEAD
-from funicular.export.scene_image import SceneImage, image_of
 from funicular.export.sources import ENGINE
-from funicular.export.values import _labels
 from funicular.integrators import INTEGRATORS
-from funicular.parts.in_plane import in_plane
-from funicular.parts.settings import RunSettings, overridden
 from funicular.scene.file import load_scene
+from packed_runs import DONE, RUNNING, expected, image, opened, rows
 
-RUNNING, DONE, STOPPED, FAILED = range(4)
 SHORT = {"duration": 0.02, "output_step": 0.002, "initial": "drawn"}
 
 
@@ -32,36 +28,6 @@ def pendulum() -> fu.Scene:
     scene.rigid_body("load", mass=2.0, inertia=(0.1, 0.1, 0.1), position=(1, 0, 0), velocity=(0, 0, 0.5))
     scene.joint("revolute", (wire, 1.0), ("load", (0, 0, 0)), axis=(0, 1, 0), name="hinge")
     return scene
-
-
-def image(scene: fu.Scene, **settings) -> SceneImage:
-    return image_of(in_plane(scene), RunSettings(**overridden(scene.run_settings, settings)))
-
-
-def opened(made: SceneImage, **options) -> PackedRun:
-    return PackedRun(made.packed.content, made.packed.digest, made.packed.kernels, **options)
-
-
-def rows(run: PackedRun, until: int | None = None) -> np.ndarray:
-    """Return the rows of a packed run up to a number of them, or to its end."""
-    found = []
-    while until is None or len(found) < until:
-        status = run.step()
-        assert status != FAILED, run.message
-        found.append(run.row())
-        if status:
-            break
-    return np.array(found)
-
-
-def expected(run: fu.Run, names: list[str]) -> np.ndarray:
-    """Return the results of a run by the names of values."""
-    found = {"time": run.time}
-    for name, result in run.variables.items():
-        if result.dims[:1] == ("time",):
-            numbers = np.asarray(result.values).reshape(len(run.time), -1)
-            found |= dict(zip([name + label for label in _labels(result, run.coords)], numbers.T, strict=True))
-    return np.stack([found[name] for name in names], axis=1)
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)

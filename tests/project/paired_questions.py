@@ -21,6 +21,7 @@ from funicular.scene.file import loads
 from funicular.scene.schema import scene_schema
 from interrupted_runs import Killed, failing
 from matplotlib import pyplot
+from packed_runs import expected, image, opened, rows
 from paired_scenes import TIME
 
 VALIDATOR = jsonschema.Draft7Validator(scene_schema())
@@ -179,6 +180,18 @@ def stepped(on: Asked) -> None:
         assert sim.time == run.time[k]
         for name, values in run.items():
             assert sim[name].tobytes() == values[k].tobytes(), name
+
+
+def packed(on: Asked) -> None:
+    """Write a scene as a program, and run its packed scene here: the rows are those of the run, up to the rounding of
+    LAPACK.
+    """
+    run = on.run()
+    on.scene.export_c(on.folder / "program", integrator=on.integrator)
+    made = opened(image(on.scene, integrator=on.integrator))
+    found, wanted = rows(made), expected(run, [name for name, _ in made.values()])
+    assert found.shape == wanted.shape
+    assert np.abs(found - wanted).max() <= 1e-6 * (1 + np.abs(wanted).max())
 
 
 def forces_in_sections(on: Asked) -> None:
@@ -342,7 +355,7 @@ def swept(on: Asked) -> None:
 
 QUESTIONS: dict[str, Callable[[Asked], None]] = {question.__name__: question for question in (
     motion, fixed_steps, from_rest, from_relaxed, from_another_run, from_arrays, named_quantities, on_threads, many,
-    errors, saved, resumed, stepped, forces_in_sections, forces_at_a_slide, page_of_run, plots_of_run, film_of_run,
-    files_for_paraview, picture_of_run, page_of_scene, plots, rest, forces_at_rest, page_of_rest, load_path,
+    errors, saved, resumed, stepped, packed, forces_in_sections, forces_at_a_slide, page_of_run, plots_of_run,
+    film_of_run, files_for_paraview, picture_of_run, page_of_scene, plots, rest, forces_at_rest, page_of_rest, load_path,
     loads_in_steps, relaxed, adjusted, modes_at_rest, modes_as_drawn, linear_models, text, schema, replaced,
     without_a_part, remeshed, chosen, swept)}

@@ -180,6 +180,11 @@ def collector(space):
     assert run["contact.s"][-1] - run["contact.s"][0] == pytest.approx(10, abs=0.1)
 
 
+def stepped(space):
+    assert space["sim"].time == 0.1 and space["run"].time[0] == pytest.approx(0.01)
+    assert space["sim"].inputs == {"push.value.x": 3.0}
+
+
 SUBJECTS = "runtime/guides/pages/"
 AFTERWARDS = {("README.md", "First scene"): saved,
               ("runtime/README.md", "Scenes"): first_scene,
@@ -197,6 +202,7 @@ AFTERWARDS = {("README.md", "First scene"): saved,
               (f"{SUBJECTS}catenaries.md", "A passage"): passage,
               (f"{SUBJECTS}running.md", "Tolerance"): named_quantities,
               (f"{SUBJECTS}running.md", "Events"): events,
+              (f"{SUBJECTS}running.md", "From outside"): stepped,
               (f"{SUBJECTS}sweeps.md", "Sweeps"): sweeps,
               (f"{SUBJECTS}sweeps.md", "Several runs"): many_scenes,
               (f"{SUBJECTS}pictures.md", "See it"): pages_and_pictures,

@@ -17,7 +17,6 @@ cdef class Arrays:
     cdef readonly dict arrays
     cdef double bytes_allocated
     cdef void **chunks
-    cdef size_t *sizes  # of the chunks, bytes
     cdef size_t n_chunks, left
     cdef char *at
 
@@ -29,7 +28,6 @@ cdef class Arrays:
         for k in range(self.n_chunks):
             free(self.chunks[k])
         free(self.chunks)
-        free(self.sizes)
 
     cdef int _count(self, double size) except -1:
         """Add to the bytes owned. Raises MemoryError."""
@@ -44,14 +42,10 @@ cdef class Arrays:
         if not more:
             raise MemoryError
         self.chunks = more
-        cdef size_t *sizes = <size_t *>realloc(self.sizes, (self.n_chunks + 1) * sizeof(size_t))
-        if not sizes:
-            raise MemoryError
-        self.sizes = sizes
         cdef char *begin = <char *>calloc(1, size + ALIGNED)
         if not begin:
             raise MemoryError
-        self.chunks[self.n_chunks], self.sizes[self.n_chunks] = begin, size + ALIGNED
+        self.chunks[self.n_chunks] = begin
         self.n_chunks += 1
         begin += ALIGNED - <size_t>begin % ALIGNED
         self.blocks.append((<size_t>begin, size))

@@ -104,9 +104,9 @@ cdef class SteppedEngine(Engine):
         if fu_pass_breakpoint(&self.run, &now, 0):
             raise ArithmeticError("the equations are singular")
 
-    cdef size_t _copy(self, char *image, int what, size_t chunks):
-        """Copy all that changes in a run to an image, or back; return its size in bytes. chunks: their number then."""
-        cdef size_t k, size = 0
+    cdef size_t _copy(self, char *image, int what, list blocks) except 0:
+        """Copy all that changes in a run to an image, or back; return its size in bytes. blocks: of memory then."""
+        cdef size_t address, bytes, size = 0
         run, m = &self.run, &self.model
         size += _copied(run, sizeof(fu_run), image + size, what)
         size += _copied(m, sizeof(fu_model), image + size, what)
@@ -114,17 +114,17 @@ cdef class SteppedEngine(Engine):
         size += _copied(self.signals, self.n_signals * sizeof(fu_signal), image + size, what)
         size += _copied(self.coupling_memory, self.coupling_bytes, image + size, what)
         size += _copied(self.event_functions, run.n_event_functions * sizeof(fu_event_function), image + size, what)
-        for k in range(chunks):
-            size += _copied(self.chunks[k], self.sizes[k], image + size, what)
+        for address, bytes in blocks:
+            size += _copied(<void *>address, bytes, image + size, what)
         return size
 
     def image(self):
         """Return all that changes in a run: bytes, the breakpoints, and the last row; for this engine alone."""
-        cdef size_t size = self._copy(NULL, MEASURED, self.n_chunks)
-        cdef bytearray taken = bytearray(size)
-        self._copy(taken, TAKEN, self.n_chunks)
+        blocks = [*self.blocks]
+        cdef bytearray taken = bytearray(self._copy(NULL, MEASURED, blocks))
+        self._copy(taken, TAKEN, blocks)
         points = [(self.run.breakpoints[k].t, self.run.breakpoints[k].jumps) for k in range(self.run.n_breakpoints)]
-        return taken, self.n_chunks, points, self.last_row()
+        return taken, blocks, points, self.last_row()
 
     def take_image(self, image):
         """Return to the state of an image of this engine, with the same bits."""

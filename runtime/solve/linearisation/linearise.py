@@ -103,6 +103,10 @@ def linearise(drawn: SceneData, inputs: Sequence[str], outputs: Sequence[str], a
 
 def _at_rest(scene: SceneData, model_of: Callable[[SceneData], Model], about: RestState | None) -> StaticState:
     """Return the static state about which the model is, in which forces balance. Raises SceneError."""
+    for contact in scene.contacts.values():
+        if contact.has_friction_spring and contact.a not in scene.ropes:
+            raise SceneError(contact.where, "its friction holds points by springs, whose stretch in a state of rest is "
+                             "unknown, and no linear model has that", "leave its friction_coefficient out")
     model = model_of(scene)
     without_waves(model)
     static = StaticState(scene, EquilibriumSettings(), model)
@@ -158,11 +162,6 @@ def _messages(scene: SceneData, sticking: Sequence[str], stick: bool, columns: C
     if creeping:
         found.append(f"regularised friction of {', '.join(creeping)} is linear in the speed, as below the velocity of "
                      "its law")
-    springs = [f'"{contact.name}"' for contact in scene.contacts.values() if contact.has_friction_spring
-               and contact.a not in scene.ropes]
-    if springs:
-        found.append(f"friction of {', '.join(springs)} holds points by springs that are stretched from the drawn "
-                     "position; in a run they begin without stretch, and points that slide in statics stick")
     wraps = rough_sheaves(scene.ropes.values())
     if wraps and not stick:
         found.append(f"ropes slide on {', '.join(wraps)} as at a speed below the velocity of the law of friction")

@@ -256,8 +256,8 @@ class Begun(NamedTuple):
 
 
 def begun(scene: SceneData, settings: RunSettings, ready: Prepared, method: Integrator, blocks: RowBlocks,
-           progress: ProgressDisplay, stream: RowStream | None, clock: StageClock, on_trial: bool = False,
-           capacity: int | None = None) -> Begun:
+          progress: ProgressDisplay, stream: RowStream | None, clock: StageClock, on_trial: bool = False,
+          capacity: int | None = None) -> Begun:
     """Start a prepared run, with its stream; on_trial: it may begin anew with another method; capacity: of the engine
     in rows, by default that of the stream's blocks, or all rows.
     """
@@ -276,7 +276,7 @@ def begun(scene: SceneData, settings: RunSettings, ready: Prepared, method: Inte
 
 
 def breakpoints_of(model: Model, settings: RunSettings, method: Integrator,
-                 tol: float) -> tuple[np.ndarray, np.ndarray]:
+                   tol: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the instants at which steps of a run end, see `breakpoints`."""
     return breakpoints(model, settings.duration, tol, turns=settings.step is None,
                        nodes=method.order > 2)
@@ -324,13 +324,28 @@ class ReadyRun(NamedTuple):
     every: int
 
 
+def settled(scene: SceneData, settings: RunSettings, initial: Start | None) -> tuple[Integrator, str]:
+    """Return the integrator of a run, after trials of its rivals as at its start, and the reason. Raises SceneError."""
+    ready, clock = prepared(scene, settings, initial), StageClock(of_thread=False)
+    method, reason, rival = choose(settings, scene, ready.model, ready.engine, None)
+    if rival is None:
+        return method, reason
+    blocks = row_blocks(int(np.ceil(settings.duration / settings.output_step)) + 1, ready.engine.row_bytes)
+
+    def begun_with(other: Integrator, on_trial: bool) -> Begun:
+        anew = prepared(scene, settings, initial)
+        return begun(scene, settings, anew, other, blocks, ProgressDisplay(), None, clock, on_trial)
+
+    run = begun(scene, settings, ready, method, blocks, ProgressDisplay(), None, clock, on_trial=True)
+    _, _, method, why = tried(scene, run, method, rival, begun_with, settings, blocks, None, None)
+    return method, reason + why
+
+
 def made_ready(scene: SceneData, settings: RunSettings, initial: Start | None = None) -> ReadyRun:
-    """Return a run of a checked scene as `simulate` starts it, with room for one row; of an integrator to be chosen the
-    first choice. Raises SceneError.
-    """
-    model, engine, event_handler, _ = _prepared(scene, settings, initial)
+    """Return a run of a checked scene as `simulate` starts it, with room for one row. Raises SceneError."""
+    model, engine, event_handler, _, _ = prepared(scene, settings, initial)
     blocks = row_blocks(int(np.ceil(settings.duration / settings.output_step)) + 1, engine.row_bytes)
-    method, reason, _ = choose(settings, scene, model, engine, None)
+    method, reason = settled(scene, settings, initial)
     tol = tol_of(settings, scene, method)
     engine.make_ready(**_for_engine(scene, settings, model, engine, method, tol), capacity=1)
     return ReadyRun(model, engine, event_handler, method, reason, blocks.every)

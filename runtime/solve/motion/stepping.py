@@ -21,12 +21,11 @@ from ...parts.settings import SMALLEST_STEP, RunSettings
 from ...parts.validation import show
 from ..linear.threads import one_blas_thread
 from .event_handler import EventHandler
-from .integrator_choice import choose, tol_of
+from .integrator_choice import tol_of
 from .progress import ProgressDisplay
 from .row_stream import row_blocks
 from .run import (
     FAILED_STATUSES,
-    Begun,
     Simulated,
     Start,
     begun,
@@ -36,7 +35,7 @@ from .run import (
     messages_before,
     prepared,
     result_notes,
-    tried,
+    settled,
 )
 
 MAX_ROWS, MAX_ROWS_BYTES = 32, 1 << 20
@@ -86,7 +85,7 @@ class Stepping:
         clock = StageClock(of_thread=False)
         begin = clock.wall
         with interruptible():
-            method, self.reason = _settled(scene, settings, initial, clock)
+            method, self.reason = settled(scene, settings, initial)
             ready = prepared(scene, settings, initial, SteppedEngine)
             self.messages = messages_before(scene, settings, ready, initial)
             capacity = max(MIN_ROWS, min(MAX_ROWS, MAX_ROWS_BYTES // ready.engine.row_bytes))
@@ -301,20 +300,3 @@ class Stepping:
         return Simulated(run.model, run.engine, run.event_handler, self.status, messages, self.reason,
                          getattr(self._method, "spectral_radius", None), self._set_up, run.began - self._begin, 0.0,
                          total, clock.cpu)
-
-
-def _settled(scene: SceneData, settings: RunSettings, initial: Start | None, clock: StageClock) -> tuple[Any, str]:
-    """Return the integrator of a scene, after trials of its rivals as at the start of a run, and the reason."""
-    ready = prepared(scene, settings, initial)
-    method, reason, rival = choose(settings, scene, ready.model, ready.engine, None)
-    if rival is None:
-        return method, reason
-    blocks = row_blocks(int(np.ceil(settings.duration / settings.output_step)) + 1, ready.engine.row_bytes)
-
-    def begun_with(other: Any, on_trial: bool) -> Begun:
-        anew = prepared(scene, settings, initial)
-        return begun(scene, settings, anew, other, blocks, ProgressDisplay(), None, clock, on_trial)
-
-    run = begun(scene, settings, ready, method, blocks, ProgressDisplay(), None, clock, on_trial=True)
-    _, _, method, why = tried(scene, run, method, rival, begun_with, settings, blocks, None, None)
-    return method, reason + why
