@@ -356,6 +356,6 @@ def swept(on: Asked) -> None:
 QUESTIONS: dict[str, Callable[[Asked], None]] = {question.__name__: question for question in (
     motion, fixed_steps, from_rest, from_relaxed, from_another_run, from_arrays, named_quantities, on_threads, many,
     errors, saved, resumed, stepped, packed, forces_in_sections, forces_at_a_slide, page_of_run, plots_of_run,
-    film_of_run, files_for_paraview, picture_of_run, page_of_scene, plots, rest, forces_at_rest, page_of_rest, load_path,
-    loads_in_steps, relaxed, adjusted, modes_at_rest, modes_as_drawn, linear_models, text, schema, replaced,
-    without_a_part, remeshed, chosen, swept)}
+    film_of_run, files_for_paraview, picture_of_run, page_of_scene, plots, rest, forces_at_rest, page_of_rest,
+    load_path, loads_in_steps, relaxed, adjusted, modes_at_rest, modes_as_drawn, linear_models, text, schema,
+    replaced, without_a_part, remeshed, chosen, swept)}
