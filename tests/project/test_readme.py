@@ -185,6 +185,12 @@ def stepped(space):
     assert space["sim"].inputs == {"push.value.x": 3.0}
 
 
+def linear_model(space):
+    linear = space["linear"]
+    assert linear.response(0.5).shape == (1, 1)
+    assert sorted(abs(linear.poles.imag))[-1] == pytest.approx(3.7059411760, rel=1e-9)
+
+
 SUBJECTS = "runtime/guides/pages/"
 AFTERWARDS = {("README.md", "First scene"): saved,
               ("runtime/README.md", "Scenes"): first_scene,
@@ -209,6 +215,7 @@ AFTERWARDS = {("README.md", "First scene"): saved,
               (f"{SUBJECTS}statics.md", "Equilibrium"): rest,
               (f"{SUBJECTS}statics.md", "A state with given values"): given_values,
               (f"{SUBJECTS}statics.md", "Rest by a damped motion"): held_by_friction,
+              (f"{SUBJECTS}statics.md", "Linear models"): linear_model,
               ("derive/README.md", "Kernels from Python"): middle_of_an_element,
               ("derive/README.md", "Your own element"): own_element,
               ("derive/README.md", "A force between two points"): force_law}
