@@ -303,6 +303,29 @@ cdef class Engine(Packable):
         for kind in OUTPUTS:
             self.arrays[kind] = self._outputs(kind, output)
 
+    def take_inputs(self, values, signals):
+        """Take inputs, before `start`: their values, and the signals that they give.
+
+        signals: of each its number, whether it drives a motion, a constant, and terms: number of an input, whether the
+        integral of it counts, and a factor.
+        """
+        cdef int k, at = 0
+        cdef fu_inputs *all = <fu_inputs *>self._memory(sizeof(fu_inputs))
+        cdef fu_input_signal *given = <fu_input_signal *>self._memory(len(signals) * sizeof(fu_input_signal))
+        cdef fu_input_term *terms = <fu_input_term *>self._memory(
+            sum([len(each[3]) for each in signals]) * sizeof(fu_input_term))
+        all.n, all.n_signals, all.signals, all.terms = len(values), len(signals), given, terms
+        all.inputs = <fu_input *>self._memory(len(values) * sizeof(fu_input))
+        for k, value in enumerate(values):
+            all.inputs[k].value = value
+        for k, (number, drives, constant, own) in enumerate(signals):
+            given[k].signal, given[k].drives, given[k].constant, given[k].first = number, drives, constant, at
+            given[k].n = len(own)
+            for term in own:
+                terms[at].input, terms[at].is_integral, terms[at].factor = term
+                at += 1
+        self.run.inputs = all
+
     def start(self, **settings):
         """Take the settings of `make_ready`, and compute the consistent start.
 
@@ -419,7 +442,7 @@ cdef class Engine(Packable):
         self._check_started()
         if len(checkpoint) != fu_save(&self.run, NULL):
             raise ValueError("the checkpoint is of another model")
-        if fu_restore(&self.run, checkpoint, rows):
+        if fu_restore(&self.run, checkpoint, rows, 0):
             raise ValueError("the checkpoint is of no state that a run can pause in")
 
     def compliance(self, multipliers):

@@ -47,10 +47,10 @@ class Simulation:
         """scene: of the inputs, checked; flat: in the axes of its plane; known_end: whether the duration is one given.
         """
         self._scene, self._flat, self._known_end = scene, flat, known_end
-        self._inputs = dict(inputs)
+        self._inputs = {path: k for k, path in enumerate(inputs)}
         self._text = SceneText(scene, read_scene, scene.libraries)
         with uninterrupted(), one_blas_thread:
-            self._stepping = Stepping(flat, settings, initial, self._inputs.values(), known_end)
+            self._stepping = Stepping(flat, settings, initial, list(inputs.values()), known_end)
         self._read_scene = read_scene
         self._row: Run | None = None
         self._raise_where_stopped()
@@ -78,7 +78,7 @@ class Simulation:
     @property
     def inputs(self) -> dict[str, float]:
         """Return the values of the inputs by path, in the units of the scene."""
-        return {path: self._stepping.value(each.held) for path, each in self._inputs.items()}
+        return {path: self._stepping.engine.input_value(k) for path, k in self._inputs.items()}
 
     @property
     def integrator(self) -> str:
@@ -135,7 +135,7 @@ class Simulation:
     def __getitem__(self, name: str) -> np.ndarray:
         """Return a result at the time reached, an array without the time of a run's; or the value of an input."""
         if name in self._inputs:
-            return np.asarray(self._stepping.value(self._inputs[name].held))
+            return np.asarray(self._stepping.engine.input_value(self._inputs[name]))
         if name == "time":
             return np.asarray(self.time)
         found: np.ndarray = self._now()[name][0]
@@ -167,12 +167,12 @@ class Simulation:
         if name not in self._inputs:
             raise SceneError(WHERE, f'"{name}" is no input', near(str(name), self._inputs) if self._inputs
                              else f'there are none: give inputs=["{name}"] to simulation()')
-        held = self._inputs[name].held
+        k = self._inputs[name]
         value, rate = _finite(f'input "{name}"', value), _finite(f'rate of "{name}"', rate)
-        if rate and self._stepping.is_position(held):
+        if rate and self._stepping.engine.is_position(k):
             raise SceneError(WHERE, f'"{name}" is a position, which moves to its value over the next step',
                              "leave the rate out, or take a velocity as the input")
-        self._stepping.give(held, value, rate)
+        self._stepping.engine.set_input(k, value, rate)
 
     @property
     def state(self) -> State:

@@ -35,6 +35,7 @@ typedef struct {
 typedef struct fu_model fu_model;
 typedef struct fu_state fu_state;
 typedef struct fu_run fu_run;
+typedef struct fu_inputs fu_inputs;
 typedef struct fu_proximity fu_proximity;
 typedef struct fu_coupling fu_coupling;
 typedef struct fu_slide fu_slide;

@@ -43,6 +43,7 @@ cdef extern from * nogil:
     #include "host/funicular.h"
     #include "host/packed.h"
     #include "integrators/list.h"
+    #include "run/inputs.h"
     #include "run/run.h"
     """
     double FU_SLACK_STRAIN, FU_NO_TIME
@@ -306,6 +307,19 @@ cdef extern from * nogil:
     int FU_HALF_BAND_ROWS(int n)
     void fu_evaluate_rows(const fu_model *model, const fu_state *state, fu_accelerator *work)
     ctypedef struct fu_integrator
+    ctypedef struct fu_input:
+        double value
+    ctypedef struct fu_input_term:
+        int input, is_integral
+        double factor
+    ctypedef struct fu_input_signal:
+        int signal, drives, first, n
+        double constant
+    ctypedef struct fu_inputs:
+        int n, n_signals
+        fu_input *inputs
+        const fu_input_signal *signals
+        const fu_input_term *terms
     ctypedef struct fu_run:
         const fu_model *model
         const fu_integrator *integrator
@@ -314,6 +328,7 @@ cdef extern from * nogil:
         double retry_factor, error_overestimate
         double *scratch
         fu_linear_model *linear
+        fu_inputs *inputs
         int n_event_functions
         const fu_event_function *event_functions
         double *event_values, *event_work, *deepest, *farthest, *deferred_at
@@ -393,7 +408,11 @@ cdef extern from * nogil:
     void fu_pause(fu_run *run)
     int fu_has_worked(const fu_run *run)
     long fu_save(const fu_run *run, char *bytes)
-    int fu_restore(fu_run *run, const char *bytes, int rows)
+    int fu_restore(fu_run *run, const char *bytes, int rows, int between)
+    void fu_set_input(fu_run *run, int k, double value, double rate)
+    double fu_input_value(const fu_run *run, int k)
+    int fu_is_position(const fu_run *run, int k)
+    int fu_give_inputs(fu_run *run, double until)
     int fu_stop(fu_run *run)
     int fu_take_deferred(fu_run *run)
     void fu_part_timing(fu_run *run, double *seconds)

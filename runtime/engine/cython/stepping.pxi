@@ -75,28 +75,30 @@ cdef class SteppedEngine(Engine):
             if fabs(run.breakpoints[k].t - run.now.t) <= FU_AT_ONCE * duration:
                 self._pass(run.breakpoints[k].jumps)
 
-    def set_signal(self, int number, double since, coefficients):
-        """Set a signal of one piece to a polynomial of the time since an instant in s, (n,) ascending powers."""
-        cdef fu_signal *g = &self.signals[number]
-        cdef int k
-        if g.n != 1 or g.amplitude != 0.0:
-            raise ValueError(f"signal {number} has more than one piece")
-        breaks, own = <double *>g.breaks, <double *>g.coefficients
-        breaks[0], breaks[1] = since, since + 1.0
-        for k in range(FU_SIGNAL_TERMS):
-            own[k] = coefficients[k] if k < len(coefficients) else 0.0
-
     def signal_at(self, int number):
-        """Return the value of a signal and its rate at the time reached."""
+        """Return the value of a signal, its rate and second derivative at the time reached."""
         cdef double rate, second
         value = fu_signal_at(&self.signals[number], self.run.now.t, &rate, &second)
-        return value, rate
+        return value, rate, second
 
-    def jump(self, bint of_rates):
-        """Continue from a jump of forces, or of_rates of driven motions, at the time reached. Raises ArithmeticError
-        where the equations are singular then.
+    def set_input(self, int k, double value, double rate):
+        """Give input k a value from the time reached on, and a rate."""
+        fu_set_input(&self.run, k, value, rate)
+
+    def input_value(self, int k):
+        """Return the value of input k at the time reached, or that it has after the next step."""
+        return fu_input_value(&self.run, k)
+
+    def is_position(self, int k):
+        """Return whether input k prescribes a position, which cannot jump."""
+        return bool(fu_is_position(&self.run, k))
+
+    def give_inputs(self, double until):
+        """Give the signals of inputs their values for a step until a time in s. Raises ArithmeticError where the equations
+        are singular then.
         """
-        self._pass(FU_RATE_JUMPS if of_rates else FU_ACCELERATION_JUMPS)
+        if fu_give_inputs(&self.run, until):
+            raise ArithmeticError("the equations are singular")
 
     cdef _pass(self, int jumps):
         cdef fu_breakpoint now
@@ -111,8 +113,6 @@ cdef class SteppedEngine(Engine):
         size += _copied(run, sizeof(fu_run), image + size, what)
         size += _copied(m, sizeof(fu_model), image + size, what)
         size += _copied(&self.linear, sizeof(fu_linear_model), image + size, what)
-        size += _copied(self.signals, self.n_signals * sizeof(fu_signal), image + size, what)
-        size += _copied(self.coupling_memory, self.coupling_bytes, image + size, what)
         size += _copied(self.event_functions, run.n_event_functions * sizeof(fu_event_function), image + size, what)
         for address, bytes in blocks:
             size += _copied(<void *>address, bytes, image + size, what)

@@ -21,7 +21,6 @@ cdef class Translation(Arrays):
     cdef fu_breakpoint *breakpoints
     cdef fu_coupling **couplings  # in the order of the engine's sums
     cdef char *coupling_memory  # their structures, one behind the other
-    cdef size_t coupling_bytes, n_signals
     cdef readonly bint needs_lapack
     cdef fu_event_function *event_functions
     cdef fu_model model
@@ -40,9 +39,8 @@ cdef class Translation(Arrays):
         self.motions = <fu_motion *>PyMem_Calloc(len(model.motions) + 1, sizeof(fu_motion))
         self.signals = <fu_signal *>PyMem_Calloc(len(model.signals) + 1, sizeof(fu_signal))
         self.couplings = <fu_coupling **>PyMem_Calloc(len(model.couplings) + 1, sizeof(fu_coupling *))
-        self.n_signals = len(model.signals)
-        self.coupling_bytes = sum([_type_of(c).size for c in model.couplings])
-        self.coupling_memory = <char *>PyMem_Calloc(1, 1 + self.coupling_bytes)
+        coupling_bytes = sum([_type_of(c).size for c in model.couplings])
+        self.coupling_memory = <char *>PyMem_Calloc(1, 1 + coupling_bytes)
         if not (self.cables and self.bodies and self.shapes and self.motions and self.signals and self.couplings
                 and self.coupling_memory):
             raise MemoryError
@@ -52,7 +50,7 @@ cdef class Translation(Arrays):
                         (<size_t>self.motions, (len(model.motions) + 1) * sizeof(fu_motion)),
                         (<size_t>self.signals, (len(model.signals) + 1) * sizeof(fu_signal)),
                         (<size_t>self.couplings, (len(model.couplings) + 1) * sizeof(fu_coupling *)),
-                        (<size_t>self.coupling_memory, <size_t>self.coupling_bytes)]
+                        (<size_t>self.coupling_memory, coupling_bytes)]
 
     def __dealloc__(self):
         fu_threads_end(self.model.threads)

@@ -74,6 +74,7 @@ struct fu_run {
     double *first;            /* n_q: the configuration at the start */
     int n_breakpoints;
     const fu_breakpoint *breakpoints; /* increasing; steps end there */
+    fu_inputs *inputs;                /* null without; by run/inputs.c */
     long most_evaluations;            /* number at which fu_advance returns; 0: unlimited */
 
     /* Step: written by the integrators and equations/. */

@@ -333,7 +333,7 @@ int funicular_restore(funicular *f, const void *bytes, size_t size)
         return tell(f, "the saved state is damaged: save it anew");
     if (!f->has_started) start(f);
     f->status = FUNICULAR_RUNNING;
-    f->is_unusable = fu_restore(f->run, numbers, (int)head.rows);
+    f->is_unusable = fu_restore(f->run, numbers, (int)head.rows, 1);
     f->run->record.first = f->run->record.n - 1;
     copy_row(f->run, 0, row);
     if (!f->is_unusable) return 0;

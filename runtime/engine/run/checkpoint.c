@@ -4,6 +4,7 @@
 #include "equations/run.h"
 #include "events/events.h"
 #include "events/slack_cables.h"
+#include "run/inputs.h"
 #include "run/run.h"
 
 #include <math.h>
@@ -61,6 +62,18 @@ static void copy_full(copier *c, fu_system *s)
     copy(c, &s->is_full, sizeof s->is_full);
 }
 
+/* Copies inputs and the signals that they give. */
+static void copy_inputs(copier *c, fu_run *run)
+{
+    const fu_inputs *all = run->inputs;
+    copy(c, all->inputs, sizeof *all->inputs * (size_t)all->n);
+    for (int i = 0; i < all->n_signals; ++i) {
+        const fu_signal *signal = &run->model->signals[all->signals[i].signal];
+        copy(c, (double *)signal->breaks, 2 * sizeof(double));
+        copy(c, (double *)signal->coefficients, FU_SIGNAL_TERMS * sizeof(double));
+    }
+}
+
 /* Copies all data on which later steps depend. Other factored matrices are left out: fu_pause drops the Newton matrix,
  * and fu_start computes that of eq 38. */
 static void copy_all(copier *c, fu_run *run)
@@ -79,6 +92,7 @@ static void copy_all(copier *c, fu_run *run)
     copy(c, &run->statistics, sizeof run->statistics);
     copy(c, &run->accelerator.evaluated, sizeof run->accelerator.evaluated);
     if (holds_matrix(run)) copy_full(c, &run->newton);
+    if (run->inputs) copy_inputs(c, run);
     copy(c, (char *)run + numbers, sizeof *run - numbers);
 }
 
@@ -143,11 +157,29 @@ static int possible_matrix(const fu_run *run)
            run->h_factored <= MAX_STEP * run->duration && possible_full(&run->newton);
 }
 
-/* Returns whether a run is in a state of fu_pause: at the time of its last row. */
-static int is_paused(const fu_run *run, int rows)
+/* Returns whether the values of inputs, and their signals, are possible. */
+static int possible_inputs(const fu_run *run)
 {
-    return run->record.n == rows && run->now.t == (rows - 1) * run->output_step && run->now.t < run->duration &&
-           run->recorded == run->now.t && possible_matrix(run);
+    const fu_inputs *all = run->inputs;
+    for (int k = 0; k < all->n; ++k) {
+        const fu_input *input = &all->inputs[k];
+        const double numbers[] = {input->since, input->value, input->rate};
+        if (!fu_all_finite(numbers, 3) || !in_range(input->is_new, 0, 1)) return 0;
+    }
+    for (int i = 0; i < all->n_signals; ++i) {
+        const fu_signal *signal = &run->model->signals[all->signals[i].signal];
+        if (!fu_all_finite(signal->breaks, 2) || !fu_all_finite(signal->coefficients, FU_SIGNAL_TERMS)) return 0;
+    }
+    return 1;
+}
+
+/* Returns whether a run is in a state of fu_pause: at the time of its last row, an output time unless it may be between
+ * them. */
+static int is_paused(const fu_run *run, int rows, int between)
+{
+    return run->record.n == rows && (between || run->now.t == (rows - 1) * run->output_step) &&
+           run->now.t < run->duration && run->recorded == run->now.t && possible_matrix(run) &&
+           (!run->inputs || possible_inputs(run));
 }
 
 /* Returns whether the counts of steps and events are possible. */
@@ -200,16 +232,17 @@ static int possible_numbers(const fu_run *run)
            fu_all_finite(run->first, run->model->n_q) && fu_all_finite(run->s_slope, run->model->n_coordinates);
 }
 
-/* Resumes a run after fu_start of the same model and settings; the `rows` earlier rows are not in the arrays. Returns
- * nonzero if no run could have paused with these bytes: the run must not continue. */
-int fu_restore(fu_run *run, const char *bytes, int rows)
+/* Resumes a run after fu_start of the same model and settings; the `rows` earlier rows are not in the arrays. between:
+ * whether the run may be between output times. Returns nonzero if no run could have paused with these bytes: the run
+ * must not continue. */
+int fu_restore(fu_run *run, const char *bytes, int rows, int between)
 {
     copier c = {(char *)bytes, 0, RESTORE};
     copy_all(&c, run);
     run->record.first = run->record.n;
     run->may_be_late = 1;
     if (run->model->proximity) run->model->proximity->is_known = 0;
-    return !(is_paused(run, rows) && fu_is_possible(run->model, &run->now) && fu_is_possible(run->model, &run->next) &&
+    return !(is_paused(run, rows, between) && fu_is_possible(run->model, &run->now) && fu_is_possible(run->model, &run->next) &&
              finite_state(run->model, &run->now) &&
              fu_are_on_path_segments(run->model, &run->now, MAX_SEGMENT_DISTANCE) && possible_counts(run) &&
              possible_indices(run) && possible_numbers(run));

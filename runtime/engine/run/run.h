@@ -33,7 +33,7 @@ int fu_reach(fu_run *run, double time, double seconds);
 /* run/checkpoint.c: all data on which later steps depend */
 void fu_pause(fu_run *run);
 long fu_save(const fu_run *run, char *bytes);
-int fu_restore(fu_run *run, const char *bytes, int rows);
+int fu_restore(fu_run *run, const char *bytes, int rows, int between);
 
 /* run/part_timing.c: time of each coupling */
 void fu_part_timing(fu_run *run, double *seconds);

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import weakref
-from collections.abc import Iterable
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,14 +13,15 @@ from ...base.interruptions import interruptible
 from ...base.stages import StageClock
 from ...engine import SteppedEngine
 from ...errors import SceneError
-from ...model.breakpoints import driving_signals
 from ...model.model import Model
-from ...parts.inputs import Held, Input, Term, terms_of
+from ...parts.inputs import Input
 from ...parts.scene_data import SceneData
 from ...parts.settings import SMALLEST_STEP, RunSettings
+from ...parts.signal import DEGREE
 from ...parts.validation import show
 from ..linear.threads import one_blas_thread
 from .event_handler import EventHandler
+from .inputs import take_inputs
 from .integrator_choice import tol_of
 from .progress import ProgressDisplay
 from .row_stream import row_blocks
@@ -47,14 +48,6 @@ AT_ONCE = 1e-12
 """Of the duration: distance of equal times, as in engine/equations/run.h."""
 
 
-class _Driven(NamedTuple):
-    """A signal of a model that inputs give: its number, its terms, whether it drives a motion."""
-
-    number: int
-    terms: list[Term]
-    drives: bool
-
-
 class Snapshot(NamedTuple):
     """All that a simulation is at a time: the engine, its events, inputs, and the place in its sequence of steps."""
 
@@ -64,8 +57,6 @@ class Snapshot(NamedTuple):
     happened: list[dict[str, Any]]
     first_times: dict[str, float]
     stopped_by: str | None
-    values: dict[int, tuple[float, float, float]]
-    changed: set[int]
     sequence: tuple[float, float, int]
 
 
@@ -76,7 +67,7 @@ class Stepping:
     for the integrator.
     """
 
-    def __init__(self, scene: SceneData, settings: RunSettings, initial: Start | None, inputs: Iterable[Input],
+    def __init__(self, scene: SceneData, settings: RunSettings, initial: Start | None, inputs: Sequence[Input],
                  known_end: bool):
         """scene: checked, in the axes of the model; inputs: of `with_inputs`; known_end: whether it pauses as a run of
         the duration in settings does, with whose bits it then agrees.
@@ -87,6 +78,7 @@ class Stepping:
         with interruptible():
             method, self.reason = settled(scene, settings, initial)
             ready = prepared(scene, settings, initial, SteppedEngine)
+            take_inputs(ready.model, ready.engine, inputs, "simulation")
             self.messages = messages_before(scene, settings, ready, initial)
             capacity = max(MIN_ROWS, min(MAX_ROWS, MAX_ROWS_BYTES // ready.engine.row_bytes))
             blocks = row_blocks(int(np.ceil(settings.duration / settings.output_step)) + 1, ready.engine.row_bytes)
@@ -99,9 +91,7 @@ class Stepping:
         self._tol = tol_of(settings, scene, method)
         self._row_limit, self._every = capacity - MIN_ROWS + 1, blocks.every if known_end else 0
         self._sequence = 0.0, settings.output_step, 0
-        self._inputs = self._driven_by(inputs)
-        self._values = {id(each.held): (0.0, each.held.start, 0.0) for each in inputs}
-        self._changed: set[int] = set()
+        self._has_inputs = bool(inputs)
         changed = weakref.proxy(self)
         self.event_handler.change_signals = lambda restarts: changed._change_signals(restarts)
 
@@ -150,9 +140,12 @@ class Stepping:
         """Step to a time in s, unless the run ends before."""
         if time > self.settings.duration * (1 + AT_ONCE):
             self._extend(time)
-        if self._inputs:
-            self._give(time)
         engine = self.engine
+        if self._has_inputs:
+            try:
+                engine.give_inputs(time)
+            except ArithmeticError as error:
+                raise SceneError("simulation", f"{error} with the inputs at t = {show(self.time, 's')}") from None
         if engine.n_rows_kept >= self._row_limit:
             self._run.row_notes.see(engine)
             engine.take_rows()
@@ -184,88 +177,13 @@ class Stepping:
         self._write_inputs()
         self.engine.change_signals(self.model, self._breakpoints(), restarts)
 
-    # inputs
-
-    def _driven_by(self, inputs: Iterable[Input]) -> list[_Driven]:
-        """Return the signals that inputs give. Raises SceneError for one that acts beside other functions of time."""
-        driving = driving_signals(self.model)
-        inertial = {drag.signal for drag in self.model.drags if drag.has_inertia}
-        found, used = [], set[int]()
-        for number, each in enumerate(self.model.signals):
-            if each.of is None or each.of.is_known:
-                continue
-            try:
-                terms = list(terms_of(each.of))
-            except ValueError as error:
-                raise SceneError("simulation", f"an input {error.args[0]}",
-                                 "drive other directions by numbers") from None
-            used |= {id(term.held) for term in terms}
-            found.append(_Driven(number, terms, number in driving or number in inertial))
-        for path in (given.path for given in inputs if id(given.held) not in used):
-            raise SceneError("simulation", f'nothing depends on the input "{path}"', "leave it out")
-        return found
-
-    def is_position(self, held: Held) -> bool:
-        """Return whether an input prescribes a position, which cannot jump."""
-        return any(term.held is held and term.order == 0 for each in self._inputs if each.drives
-                   for term in each.terms)
-
-    def value(self, held: Held) -> float:
-        """Return the value of an input at the time reached, or that it will have after the next step."""
-        since, value, rate = self._values[id(held)]
-        return value + rate * (self.time - since)
-
-    def give(self, held: Held, value: float, rate: float = 0.0) -> None:
-        """Give an input a value from now on, and a rate; a position reaches its value at the end of the next step."""
-        self._values[id(held)] = self.time, value, rate
-        self._changed.add(id(held))
-
-    def _give(self, until: float) -> None:
-        """Give the engine's signals the values of inputs for a step; forces and rates may jump."""
-        jumps = of_rates = False
-        engine, now = self.engine, self.time
-        for number, terms, drives in self._inputs:
-            if not drives and not any(id(term.held) in self._changed for term in terms):
-                continue
-            value, rate = engine.signal_at(number)
-            made = self._polynomial(terms, drives, value, now, until)
-            if made[0] == value and made[1] == rate and not any(id(term.held) in self._changed for term in terms):
-                continue
-            jumps |= not drives and made[0] != value
-            of_rates |= drives and made[1] != rate
-            engine.set_signal(number, now, made)
-        self._changed.clear()
-        if jumps or of_rates:
-            try:
-                engine.jump(of_rates)
-            except ArithmeticError as error:
-                raise SceneError("simulation", f"{error} with the inputs at t = {show(now, 's')}") from None
-
-    def _polynomial(self, terms: list[Term], drives: bool, value: float, now: float, until: float) -> list[float]:
-        """Return a signal as a polynomial of the time from now on; value: of the signal now."""
-        made, target = [0.0, 0.0, 0.0], 0.0
-        integrates = any(term.order for term in terms)
-        for factor, order, held in terms:
-            if held is None:
-                target += factor
-                continue
-            _, given, rate = self._values[id(held)]
-            given += rate * (now - self._values[id(held)][0])
-            made[order] += factor * given
-            made[order + 1] += factor * rate / (order + 1)
-        if not drives:
-            return [made[0] + target, made[1]]
-        if integrates:
-            return [value, made[1], made[2]]
-        return [value, (made[0] + target - value) / (until - now)]
-
     def _write_inputs(self) -> None:
         """Write the present polynomials of inputs into the model, from which the engine reads signals anew."""
-        for number, _, _ in self._inputs:
-            value, rate = self.engine.signal_at(number)
-            signal = self.model.signals[number]
-            signal.breaks, signal.coefficients = self.time + np.array([0.0, 1.0]), np.zeros((1, 7))
-            signal.coefficients[0, :2] = value, rate
+        for number, signal in enumerate(self.model.signals):
+            if signal.of is not None and not signal.of.is_known:
+                value, rate, second = self.engine.signal_at(number)
+                signal.breaks, signal.coefficients = self.time + np.array([0.0, 1.0]), np.zeros((1, DEGREE + 1))
+                signal.coefficients[0, :3] = value, rate, second / 2
 
     # states
 
@@ -273,8 +191,7 @@ class Stepping:
         """Return all that it is now."""
         handler = self.event_handler
         return Snapshot(self.engine.image(), self.settings, self.status, [*handler.happened],
-                        dict(self.model.signals.happened), handler.stopped_by, dict(self._values), set(self._changed),
-                        self._sequence)
+                        dict(self.model.signals.happened), handler.stopped_by, self._sequence)
 
     def return_to(self, kept: Snapshot) -> None:
         """Return to what it was, with the same bits."""
@@ -283,7 +200,7 @@ class Stepping:
         self.settings, self.status, handler.stopped_by = kept.settings, kept.status, kept.stopped_by
         handler.happened[:] = kept.happened
         self.model.signals.return_to(kept.first_times)
-        self._values, self._changed, self._sequence = dict(kept.values), set(kept.changed), kept.sequence
+        self._sequence = kept.sequence
 
     # results
 
