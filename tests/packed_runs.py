@@ -6,13 +6,16 @@ from funicular.engine import PackedRun
 from funicular.export.scene_image import SceneImage, image_of
 from funicular.export.values import _labels
 from funicular.parts.in_plane import in_plane
+from funicular.parts.inputs import with_inputs
 from funicular.parts.settings import RunSettings, overridden
 
 RUNNING, DONE, STOPPED, FAILED = range(4)
 
 
-def image(scene: fu.Scene, **settings) -> SceneImage:
-    return image_of(in_plane(scene), RunSettings(**overridden(scene.run_settings, settings)))
+def image(scene: fu.Scene, inputs: tuple[str, ...] = (), **settings) -> SceneImage:
+    """Return the packed scene of a run with these settings."""
+    driven, found = with_inputs(scene, inputs, "export")
+    return image_of(in_plane(driven), RunSettings(**overridden(scene.run_settings, settings)), inputs=found)
 
 
 def opened(made: SceneImage, **options) -> PackedRun:

@@ -332,13 +332,16 @@ def export(
     output_step: Annotated[float | None, typer.Option(help="s, instead of the scene's")] = None,
     integrator: Integrator = None,
     spectral_radius: Annotated[float | None, typer.Option(help="of genalpha and energy")] = None,
+    inputs: Annotated[list[str] | None, typer.Option("--input", metavar="PATH", help="a load, drive, motion or "
+                      "velocity of a fluid that is given while it runs, such as push.value.x; may be repeated")] = None,
     library: Libraries = None,
 ) -> None:
     """Write the run of a scene as a program that needs no Python."""
     if kind != "c":
         raise typer.BadParameter(f"{kind!r}: scenes are exported as c")
     made = load_scene(scene, library or ()).export_c(folder, duration, tol=tol, step=step, output_step=output_step,
-                                                     integrator=integrator, spectral_radius=spectral_radius)
+                                                     integrator=integrator, spectral_radius=spectral_radius,
+                                                     inputs=inputs or ())
     for note in made.messages:
         print(f"note: {note}", file=sys.stderr)
     print(f"written: {made.folder}: integrator {made.integrator}, {len(made.values)} values a row; make builds the "

@@ -74,10 +74,11 @@ class _Memory(NamedTuple):
 
 
 def packed(engine: Engine, twin: Engine, *, every: int, values: Sequence[Value], couplings: Sequence[str],
-           stops: Iterable[bool]) -> Packed:
+           stops: Iterable[bool], inputs: Sequence[tuple[str, str]] = ()) -> Packed:
     """Return the packed scene of a run that is ready; twin: another one, prepared alike.
 
-    every: rows between pauses; couplings: kinds and names of all; stops: whether an event of the user ends the run.
+    every: rows between pauses; couplings: kinds and names of all; stops: whether an event of the user ends the run;
+    inputs: names and units.
     Raises RuntimeError where the two differ in more than addresses.
     """
     version, magic, layout, alignment = packed_format()
@@ -106,12 +107,13 @@ def packed(engine: Engine, twin: Engine, *, every: int, values: Sequence[Value],
                  for each in sorted(values, key=lambda value: value.name.encode())),
         _padded(struct.pack(f"={len(couplings)}I", *map(texts.at, couplings))),
         _padded(struct.pack(f"={len(stopping)}I", *stopping)),
+        b"".join(struct.pack("=II", texts.at(name), texts.at(unit)) for name, unit in inputs),
         b"".join(words[first:end].tobytes() for first, end in segments),
     ]
     body = b"".join(parts) + _padded(bytes(texts.content))
     head = HEAD.pack(magic, version, layout, bytes(32), HEAD.size + len(body), WORD * len(words), run, len(parts[-1]),
                      len(texts.content), len(segments), len(at), len(linked), len(values), len(couplings),
-                     len(stopping), every, 0)
+                     len(stopping), len(inputs), every)
     digest = hashlib.sha256(head[COVERED_FROM:] + body).digest()
     content = head[:DIGEST_AT] + digest + head[COVERED_FROM:] + body
     kernels = sorted({(role, name) for _, role, name in linked if role not in WORDS_NOT_KERNELS})

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from ..errors import SceneError
+from ..parts.inputs import Input
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
 from ..solve.motion.run import Start, made_ready
@@ -25,11 +27,14 @@ class SceneImage(NamedTuple):
     has_lapack: bool
 
 
-def image_of(scene: SceneData, settings: RunSettings, initial: Start | None = None) -> SceneImage:
-    """Return the image of a checked scene's run, in the axes of the model. Raises SceneError for what C cannot run."""
+def image_of(scene: SceneData, settings: RunSettings, initial: Start | None = None,
+             inputs: Sequence[Input] = ()) -> SceneImage:
+    """Return the image of a checked scene's run, in the axes of the model; inputs: of `with_inputs`. Raises SceneError
+    for what C cannot run.
+    """
     _refuse(scene)
     settings = settings.model_copy(update={"threads": 1})
-    run, twin = (made_ready(scene, settings, initial) for _ in range(2))
+    run, twin = (made_ready(scene, settings, initial, inputs) for _ in range(2))
     handler = run.event_handler
     for function in handler.event_functions:
         if function.kind == "function":
@@ -44,7 +49,8 @@ def image_of(scene: SceneData, settings: RunSettings, initial: Start | None = No
     for array in twin.engine.record_arrays().values():
         array[:] = 0.0
     made = packed(run.engine, twin.engine, every=run.every, values=values, couplings=names,
-                  stops=[function.event.action == "stop" for function in handler.event_functions])
+                  stops=[function.event.action == "stop" for function in handler.event_functions],
+                  inputs=[(each.path, each.unit) for each in inputs])
     return SceneImage(made, run.method.name, run.reason, values, missing, run.engine.has_lapack)
 
 

@@ -352,32 +352,36 @@ class Scene(Viewable, DescribedScene):
         spectral_radius: float | None = None,
         model: str | None = None,
         initial: str | Equilibrium | Mapping[str, ArrayLike] | None = None,
+        inputs: Sequence[str] = (),
         **unknown: Never,
     ) -> Exported:
         """Write the run of this scene as a program in C11 to a folder, which is new, empty, or of an earlier export.
 
-        The settings are those of `run`. The folder has the engine, the kernels of this scene, the packed scene,
-        the interface ``funicular.h``, an example ``main.c``, ``Makefile`` and ``CMakeLists.txt``. The program
-        needs libc, libm and threads alone. Its rows are those of `run`, bit for bit on one machine where
-        compilers contract no operations and the run calls no LAPACK, otherwise up to rounding. Returns
-        `Exported`: the values of a row by name, and the results that have none in C.
+        The settings are those of `run`, the inputs those of `simulation`. The folder has the engine, the
+        kernels of this scene, the packed scene, the interface ``funicular.h``, an example ``main.c``,
+        ``Makefile`` and ``CMakeLists.txt``. The program needs libc, libm and threads alone. Its rows are those
+        of `run`, bit for bit on one machine where compilers contract no operations and the run calls no LAPACK,
+        otherwise up to rounding. Returns `Exported`: the values of a row by name, and the results that have
+        none in C.
 
         Raises SceneError for what C cannot run: functions of events, loads and friction that events switch, elements of
         a library of the user.
         """
-        _refuse_unknown("export_c", unknown, RunSettings.keywords())
+        _refuse_unknown("export_c", unknown, (*RunSettings.keywords(), "inputs"))
         given = {"duration": duration, "tol": tol, "absolute_tol": absolute_tol, "quantities": quantities, "step": step,
                  "output_step": output_step, "integrator": integrator, "spectral_radius": spectral_radius,
                  "model": model, "initial": initial}
         with one_blas_thread, enough_memory():
             from ..export.program import write_program  # brings the engine
             from ..export.scene_image import image_of
+            from ..parts.inputs import with_inputs
 
             scene, settings, state, chosen = self._settled({k: v for k, v in given.items() if v is not None})
-            scene._check_for(settings)
+            driven, found = with_inputs(scene, inputs, "export_c")
+            driven._check_for(settings)
             if settings.initial in ("equilibrium", "relaxed") and state is None:
-                state = _at_rest(settings.initial, scene, None if chosen is None else chosen.rest)
-            return write_program(folder, image_of(in_plane(scene), settings, state))
+                state = _at_rest(settings.initial, driven, None if chosen is None else chosen.rest)
+            return write_program(folder, image_of(in_plane(driven), settings, state, found))
 
     def equilibrium(
         self,

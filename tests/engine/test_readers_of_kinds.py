@@ -32,7 +32,7 @@ PLACES = {
         "results/section_forces/nodal_forces.py"],
     "an instant or a frequency of fluids: their signals, tables and added mass": [
         "model/drag_forces.py", "model/breakpoints.py", "results/section_forces/balance_limits.py",
-        "solve/motion/stepping.py", "solve/statics/string_start.py"],
+        "solve/motion/inputs.py", "solve/statics/string_start.py"],
     "forces of branches and working curves within elements, which a balance does not know": [
         "results/section_forces/balance_limits.py"],
     "highest strains of ropes in a state": ["model/initial_state.py"],

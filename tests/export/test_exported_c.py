@@ -71,6 +71,60 @@ def test_saved_states_continue_with_the_same_bits(integrator):
             other.restore(bad)
 
 
+@pytest.mark.parametrize("integrator", ["genalpha", "explicit", "radau"])
+def test_inputs_and_any_times_have_the_bits_of_a_simulation(integrator):
+    """A force, and the velocity of a drive; over a saved state, which drops what a simulation keeps in between."""
+    scene = pendulum()
+    scene.force("load", value=(1.0, 0.0, 0.0), name="push")
+    scene.joint("prismatic", (0, 0, 0), scene.rigid_body("cart", mass=1.0, inertia=(1, 1, 1), position=(0, 0, 0)),
+                axis=(1, 0, 0), velocity=0.0, name="rail")
+    inputs, settings = ("push.value.x", "rail.velocity"), {"duration": 0.1, "output_step": 0.01, "tol": 1e-4,
+                                                           "integrator": integrator}
+    sim, made = scene.simulation(inputs, **settings), image(scene, inputs, **settings)
+    one, other = opened(made), opened(made)
+    names = ["load.position.x", "cart.position.x", "energy.external", "hinge.force.z"]
+    assert one.inputs() == [("push.value.x", "N", 1.0), ("rail.velocity", "", 0.0)]
+    one.step()
+    for k in range(1, 6):
+        given = ("push.value.x", 2.0 * k, 0.0 if k < 4 else 30.0), ("rail.velocity", 0.1 * (k % 3), 0.0)
+        for name, value, rate in given:
+            sim.set(name, value, rate)
+            one.set_input(name, value, rate)
+        sim.step(0.003)
+        one.reach(sim.time)
+        assert one.time == sim.time
+        for name in names:
+            result, _, axis = name.rpartition(".")
+            expected_value = sim[name] if result == "energy" else sim[result]["xyz".index(axis)]
+            assert one[name] == expected_value, (k, name)
+    kept = one.save()
+    other.restore(kept)
+    for run in (one, other):
+        run.set_input("push.value.x", -3.0)
+        run.reach(0.0171)
+    assert np.array_equal(one.row(), other.row()) and other.inputs() == one.inputs()
+    status = RUNNING
+    while status == RUNNING:
+        status = one.step()
+    assert status == DONE and one.time == 0.1
+
+
+def test_what_inputs_of_programs_refuse():
+    scene = pendulum()
+    scene.force("load", value=(1.0, 0.0, 0.0), name="push")
+    run = opened(image(scene, ("push.value.x",), duration=0.1, integrator="explicit"))
+    for name, value, rate, cause in (("push.value.x", 1.0, 0.0, "after the start"), ("pull", 1.0, 0.0, "is unknown"),
+                                     ("push.value.x", np.nan, 0.0, "finite")):
+        with pytest.raises(ValueError, match=cause):
+            run.set_input(name, value, rate)
+    run.step()
+    for time in (0.0, -1.0, 0.2, np.nan, 1e-15):
+        before = run.time
+        assert run.reach(time) == RUNNING and run.time == before
+        assert "is not after the last row" in run.message
+    assert run.reach(0.1) == DONE
+
+
 def test_values_are_set_before_the_start_and_times_have_rows():
     scene = pendulum()
     run = opened(image(scene, duration=0.2, integrator="explicit"))

@@ -43,7 +43,6 @@ cdef extern from * nogil:
     #include "host/funicular.h"
     #include "host/packed.h"
     #include "integrators/list.h"
-    #include "run/inputs.h"
     #include "run/run.h"
     """
     double FU_SLACK_STRAIN, FU_NO_TIME
@@ -438,6 +437,13 @@ cdef extern from * nogil:
     funicular *funicular_open(const funicular_scene *scene, void *memory, char *message)
     void funicular_close(funicular *f)
     int funicular_step(funicular *f)
+    int funicular_reach(funicular *f, double time)
+    int funicular_inputs(const funicular *f)
+    int funicular_find_input(const funicular *f, const char *name)
+    const char *funicular_input_name(const funicular *f, int k)
+    const char *funicular_input_unit(const funicular *f, int k)
+    double funicular_input(const funicular *f, int k)
+    int funicular_set_input(funicular *f, int k, double value, double rate)
     int funicular_advance(funicular *f, double time)
     double funicular_time(const funicular *f)
     const char *funicular_message(const funicular *f)

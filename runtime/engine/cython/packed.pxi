@@ -130,6 +130,21 @@ cdef class PackedRun:
         """Compute the rows until a time in s; return the status."""
         return funicular_advance(self.run, time)
 
+    def reach(self, double time):
+        """Continue to a time in s; return the status."""
+        return funicular_reach(self.run, time)
+
+    def inputs(self):
+        """Return names, units and values of all inputs."""
+        cdef int k
+        return [(funicular_input_name(self.run, k).decode(), funicular_input_unit(self.run, k).decode(),
+                 funicular_input(self.run, k)) for k in range(funicular_inputs(self.run))]
+
+    def set_input(self, str name, double value, double rate=0.0):
+        """Give an input a value and a rate."""
+        if funicular_set_input(self.run, funicular_find_input(self.run, name.encode()), value, rate):
+            raise ValueError(self.message)
+
     def _reference(self, str name):
         cdef int found = funicular_find(self.run, name.encode())
         if found < 0:

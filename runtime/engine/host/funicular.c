@@ -11,8 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ROW_TOLERANCE 1e-9 /* of the output step */
-#define MAX_MEMORY_BITS 38 /* of the bytes of a run: beyond them its head is forged */
+#define ROW_TOLERANCE 1e-9  /* of the output step */
+#define SHORTEST_STEP 4e-12 /* of the duration */
+#define MAX_MEMORY_BITS 38  /* of the bytes of a run: beyond them its head is forged */
 #define TOO_LARGE "the machine has too little memory for the scene: take fewer elements"
 
 struct funicular {
@@ -20,7 +21,7 @@ struct funicular {
     fu_run *run;
     void *allocated; /* null in the caller's memory */
     funicular_status status;
-    int has_started, is_unusable;
+    int has_started, is_unusable, is_between; /* is_between: the last row is at no output time */
     char message[FUNICULAR_MESSAGE];
 };
 
@@ -28,7 +29,7 @@ struct funicular {
 typedef struct {
     unsigned char digest[FU_DIGEST_BYTES]; /* of the scene */
     uint64_t size;
-    uint32_t rows, check; /* check: of the bytes that follow */
+    uint32_t rows, is_between, check, unused; /* check: of the bytes that follow */
 } saved_head;
 
 /* Writes a message; returns 1. */
@@ -131,17 +132,15 @@ static funicular_status ended(funicular *f, int status)
     }
 }
 
-/* Continues to the next row; returns a status of the engine. Events that do not end the run are passed. */
-static int to_next_row(funicular *f)
+/* Continues to the row of a time, s; returns a status of the engine. Events that do not end the run are passed. */
+static int to_row(funicular *f, double time)
 {
     fu_run *run = f->run;
-    const int rows = run->record.n;
-    run->record.first = rows;
-    run->record.pause = rows + 1;
-    run->record.every = 0;
+    run->record.first = run->record.n;
+    if (run->inputs && fu_give_inputs(run, time)) return FU_SINGULAR;
     for (;;) {
-        const int status = fu_advance(run, INFINITY);
-        if (status == FU_RUNNING && run->record.n > rows) return status;
+        const int status = fu_reach(run, time, INFINITY);
+        if (status == FU_DONE) return time < run->duration ? FU_RUNNING : FU_DONE;
         if (status == FU_RUNNING) continue;
         if (status != FU_EVENT) return status;
         const int is_of_part =
@@ -162,10 +161,30 @@ static int start(funicular *f)
 funicular_status funicular_step(funicular *f)
 {
     if (f->is_unusable || f->status) return f->status;
-    const int is_start = !f->has_started, status = is_start ? start(f) : to_next_row(f);
+    const fu_run *run = f->run;
+    const double next = f->is_between ? run->recorded + run->output_step : run->record.n * run->output_step;
+    const int is_start = !f->has_started;
+    const int status =
+        is_start ? start(f) : to_row(f, next > run->duration * (1.0 - FU_AT_ONCE) ? run->duration : next);
     if (status) return f->status = ended(f, status);
-    if (!is_start && f->run->record.n % (int)f->parts.head->every == 0) fu_pause(f->run);
+    if (!is_start && !f->is_between && run->record.n % (int)f->parts.head->every == 0) fu_pause(f->run);
     return FUNICULAR_RUNNING;
+}
+
+funicular_status funicular_reach(funicular *f, double time)
+{
+    const fu_run *run = f->run;
+    if (!f->has_started) funicular_step(f);
+    if (f->is_unusable || f->status) return f->status;
+    if (!(time > run->recorded + SHORTEST_STEP * run->duration && time <= run->duration * (1.0 + ROW_TOLERANCE))) {
+        tell(f, "time %.9g s is not after the last row, at %.9g s, and up to the duration %.9g s: give another one",
+             time, run->recorded, run->duration);
+        return f->status;
+    }
+    f->is_between = 1;
+    const int status = to_row(f, time < run->duration ? time : run->duration);
+    if (status) f->status = ended(f, status);
+    return f->status;
 }
 
 funicular_status funicular_advance(funicular *f, double time)
@@ -175,6 +194,10 @@ funicular_status funicular_advance(funicular *f, double time)
     if (!(time >= 0.0 && time <= end * (1.0 + ROW_TOLERANCE)) || (off > ROW_TOLERANCE * step && time < end)) {
         tell(f, "time %.9g s has no row: give a multiple of the output step %.9g s up to the duration %.9g s", time,
              step, end);
+        return f->status;
+    }
+    if (f->is_between) {
+        tell(f, "the last row is at no output time: call funicular_reach");
         return f->status;
     }
     while (!f->status && (!f->has_started || f->run->recorded < time - ROW_TOLERANCE * step)) funicular_step(f);
@@ -274,6 +297,52 @@ int funicular_set(funicular *f, const int *references, size_t n, const double *v
     return 0;
 }
 
+int funicular_inputs(const funicular *f)
+{
+    return (int)f->parts.head->n_inputs;
+}
+
+static int is_input(const funicular *f, int k)
+{
+    return k >= 0 && k < funicular_inputs(f);
+}
+
+const char *funicular_input_name(const funicular *f, int k)
+{
+    return is_input(f, k) ? f->parts.texts + f->parts.inputs[k].name : "";
+}
+
+const char *funicular_input_unit(const funicular *f, int k)
+{
+    return is_input(f, k) ? f->parts.texts + f->parts.inputs[k].unit : "";
+}
+
+int funicular_find_input(const funicular *f, const char *name)
+{
+    for (int k = 0; k < funicular_inputs(f); ++k)
+        if (!strcmp(funicular_input_name(f, k), name)) return k;
+    return -1;
+}
+
+double funicular_input(const funicular *f, int k)
+{
+    return is_input(f, k) ? fu_input_value(f->run, k) : NAN;
+}
+
+int funicular_set_input(funicular *f, int k, double value, double rate)
+{
+    if (!is_input(f, k))
+        return tell(f, "input %d is unknown: there are %d; funicular_find_input gives that of a name", k,
+                    funicular_inputs(f));
+    if (!isfinite(value) || !isfinite(rate)) return tell(f, "input \"%s\" must be finite", funicular_input_name(f, k));
+    if (rate != 0.0 && fu_is_position(f->run, k))
+        return tell(f, "input \"%s\" is a position, which moves to its value over the next step: give no rate",
+                    funicular_input_name(f, k));
+    if (!f->has_started) return tell(f, "inputs are given after the start: call funicular_step first");
+    fu_set_input(f->run, k, value, rate);
+    return 0;
+}
+
 /* Copies the last row to or from `bytes`, unless they are null; returns its number of bytes. */
 static size_t copy_row(const fu_run *run, char *to, const char *from)
 {
@@ -311,7 +380,9 @@ static uint32_t check_of(const char *bytes, size_t size)
 int funicular_save(funicular *f, void *bytes)
 {
     if (!f->has_started || f->status) return tell(f, "a state is saved after a row of a run that has not ended");
-    saved_head head = {.size = (uint64_t)funicular_saved(f), .rows = (uint32_t)f->run->record.n};
+    saved_head head = {.size = (uint64_t)funicular_saved(f),
+                       .rows = (uint32_t)f->run->record.n,
+                       .is_between = (uint32_t)f->is_between};
     char *numbers = (char *)bytes + sizeof head;
     memcpy(head.digest, f->parts.head->digest, sizeof head.digest);
     fu_pause(f->run);
@@ -329,11 +400,12 @@ int funicular_restore(funicular *f, const void *bytes, size_t size)
     memcpy(&head, bytes, sizeof head);
     if (memcmp(head.digest, f->parts.head->digest, sizeof head.digest) || head.size != size)
         return tell(f, "the saved state is of another scene");
-    if (check_of(row, size - sizeof head) != head.check || head.rows < 1)
+    if (check_of(row, size - sizeof head) != head.check || head.rows < 1 || head.is_between > 1)
         return tell(f, "the saved state is damaged: save it anew");
     if (!f->has_started) start(f);
     f->status = FUNICULAR_RUNNING;
-    f->is_unusable = fu_restore(f->run, numbers, (int)head.rows, 1);
+    f->is_unusable = fu_restore(f->run, numbers, (int)head.rows, (int)head.is_between);
+    f->is_between = (int)head.is_between;
     f->run->record.first = f->run->record.n - 1;
     copy_row(f->run, 0, row);
     if (!f->is_unusable) return 0;

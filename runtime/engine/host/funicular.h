@@ -49,6 +49,9 @@ void funicular_close(funicular *f);
 funicular_status funicular_step(funicular *f);
 /* Computes the rows until `time`, s, which is a multiple of the output step up to 1e-9 of it. */
 funicular_status funicular_advance(funicular *f, double time);
+/* Continues to any time after the last row, s, up to the duration, and computes its row. From there on funicular_step
+ * computes a row after each output step. */
+funicular_status funicular_reach(funicular *f, double time);
 funicular_status funicular_state(const funicular *f);
 double funicular_time(const funicular *f);        /* s: of the last row */
 double funicular_duration(const funicular *f);    /* s: of the run */
@@ -67,6 +70,18 @@ int funicular_get(funicular *f, const int *references, size_t n, double *values)
 /* Sets velocities, such as "A.velocity.x", before the start; returns nonzero, with a message, for other values. Joints
  * may change them. */
 int funicular_set(funicular *f, const int *references, size_t n, const double *values);
+
+/* Inputs, such as "push.value.x", which begin with the values of the scene: their number, the number of a name or -1,
+ * names and units, values. After the start an input is given a value from the last row on, and a rate, 1/s, with which
+ * it goes on. Forces, torques and velocities of drives jump to it; a position, such as the angle of a joint, moves to
+ * it over the next step with a constant velocity, and takes no rate. Returns nonzero, with a message, if that is
+ * impossible. */
+int funicular_inputs(const funicular *f);
+int funicular_find_input(const funicular *f, const char *name);
+const char *funicular_input_name(const funicular *f, int k);
+const char *funicular_input_unit(const funicular *f, int k);
+double funicular_input(const funicular *f, int k);
+int funicular_set_input(funicular *f, int k, double value, double rate);
 
 /* Saves the state after a row to funicular_saved bytes, and restores it in a run of the same scene, which continues
  * with the same bits as the run that saved it. Both return nonzero, with a message, if that is impossible; a run whose

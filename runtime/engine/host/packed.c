@@ -6,6 +6,7 @@
 #include "couplings/common/proximity.h"
 #include "events/list.h"
 #include "integrators/list.h"
+#include "run/run.h"
 
 #include <string.h>
 
@@ -71,6 +72,8 @@ static int are_possible(const fu_parts *p)
             return 0;
     for (uint32_t i = 0; i < head->n_couplings; ++i)
         if (p->couplings[i] >= head->texts) return 0;
+    for (uint32_t i = 0; i < head->n_inputs; ++i)
+        if (p->inputs[i].name >= head->texts || p->inputs[i].unit >= head->texts) return 0;
     return numbers == head->numbers;
 }
 
@@ -101,6 +104,7 @@ const char *fu_packed_parts(const void *bytes, size_t size, const unsigned char 
         !(p->values = part(&at, &left, head->n_values, sizeof *p->values)) ||
         !(p->couplings = part(&at, &left, head->n_couplings, sizeof *p->couplings)) ||
         !(p->stops = part(&at, &left, head->n_stops, sizeof *p->stops)) ||
+        !(p->inputs = part(&at, &left, head->n_inputs, sizeof *p->inputs)) ||
         !(p->numbers = part(&at, &left, head->numbers, 1)) || !(p->texts = part(&at, &left, head->texts, 1)) || left ||
         !are_possible(p))
         return "the packed scene has impossible sizes or places: export the scene anew";
@@ -143,6 +147,7 @@ static int are_values_of(const fu_parts *p, const fu_run *run, uintptr_t base)
         const fu_array array = fu_record_array(run->model, &run->record, (int)p->values[i].array);
         if (p->values[i].index >= (unsigned long)(array.axes == 1 ? 1 : array.items)) return 0;
     }
+    if (p->head->n_inputs != (uint32_t)(run->inputs ? run->inputs->n : 0)) return 0;
     return p->head->n_couplings == (uint32_t)run->model->n_couplings &&
            p->head->n_stops <= (uint32_t)run->n_event_functions;
 }

@@ -22,8 +22,8 @@ typedef struct {
     uint64_t size, memory, run;            /* of the bytes; of the memory; place of fu_run in it */
     uint64_t numbers, texts;               /* bytes of both */
     uint32_t n_segments, n_addresses, n_links, n_values, n_couplings, n_stops;
+    uint32_t n_inputs;
     uint32_t every; /* rows between the pauses of the run (fu_pause) */
-    uint32_t unused;
 } fu_packed;
 
 typedef struct {
@@ -44,6 +44,11 @@ typedef struct {
     double factor;
 } fu_value;
 
+/* An input of the run; texts */
+typedef struct {
+    uint32_t name, unit;
+} fu_named_input;
+
 /* A table of kernels of the program; a list ends with one without a role. */
 typedef struct {
     const char *role, *name;
@@ -63,9 +68,10 @@ typedef struct {
     const fu_segment *segments;
     const fu_address *addresses;
     const fu_link *links;
-    const fu_value *values;       /* sorted by name */
-    const uint32_t *couplings;    /* texts: kind and name of each */
-    const uint32_t *stops;        /* per event function of the user: whether it ends the run */
+    const fu_value *values;    /* sorted by name */
+    const uint32_t *couplings; /* texts: kind and name of each */
+    const uint32_t *stops;     /* per event function of the user: whether it ends the run */
+    const fu_named_input *inputs;
     const unsigned char *numbers; /* of the segments, one after the other */
     const char *texts;
 } fu_parts;

@@ -4,7 +4,6 @@
 #include "equations/run.h"
 #include "events/events.h"
 #include "events/slack_cables.h"
-#include "run/inputs.h"
 #include "run/run.h"
 
 #include <math.h>
@@ -242,8 +241,8 @@ int fu_restore(fu_run *run, const char *bytes, int rows, int between)
     run->record.first = run->record.n;
     run->may_be_late = 1;
     if (run->model->proximity) run->model->proximity->is_known = 0;
-    return !(is_paused(run, rows, between) && fu_is_possible(run->model, &run->now) && fu_is_possible(run->model, &run->next) &&
-             finite_state(run->model, &run->now) &&
+    return !(is_paused(run, rows, between) && fu_is_possible(run->model, &run->now) &&
+             fu_is_possible(run->model, &run->next) && finite_state(run->model, &run->now) &&
              fu_are_on_path_segments(run->model, &run->now, MAX_SEGMENT_DISTANCE) && possible_counts(run) &&
              possible_indices(run) && possible_numbers(run));
 }

@@ -1,5 +1,4 @@
 /* Inputs: values of signals that are given from outside while a run goes on. */
-#include "run/inputs.h"
 #include "run/run.h"
 
 /* Gives an input a value at `now`, with which it goes on at a rate. */

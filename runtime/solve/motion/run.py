@@ -6,7 +6,7 @@ import logging
 import math
 import warnings
 import weakref
-from collections.abc import Callable, Container
+from collections.abc import Callable, Container, Sequence
 from functools import partial
 from typing import Any, NamedTuple, Protocol
 
@@ -27,6 +27,7 @@ from ...model.initial_state import InitialState
 from ...model.model import Model
 from ...model.redundant_constraints import drop_redundant_rows
 from ...parts.event import first_times
+from ...parts.inputs import Input
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
 from ..linear.threads import share_elements
@@ -39,6 +40,7 @@ from ..notes.signal_steps import unresolved
 from ..notes.slack_growth import SlackMotion, grown
 from ..notes.uncontrolled_errors import NormalForces, uncontrolled_errors
 from .event_handler import EventHandler
+from .inputs import take_inputs
 from .integrator_choice import Rival, choose, tol_of
 from .long_runs import LongRun
 from .progress import ProgressDisplay
@@ -341,9 +343,13 @@ def settled(scene: SceneData, settings: RunSettings, initial: Start | None) -> t
     return method, reason + why
 
 
-def made_ready(scene: SceneData, settings: RunSettings, initial: Start | None = None) -> ReadyRun:
-    """Return a run of a checked scene as `simulate` starts it, with room for one row. Raises SceneError."""
+def made_ready(scene: SceneData, settings: RunSettings, initial: Start | None = None,
+               inputs: Sequence[Input] = ()) -> ReadyRun:
+    """Return a run of a checked scene as `simulate` starts it, with room for one row; inputs: of the scene, of
+    `with_inputs`. Raises SceneError.
+    """
     model, engine, event_handler, _, _ = prepared(scene, settings, initial)
+    take_inputs(model, engine, inputs, "export")
     blocks = row_blocks(int(np.ceil(settings.duration / settings.output_step)) + 1, engine.row_bytes)
     method, reason = settled(scene, settings, initial)
     tol = tol_of(settings, scene, method)
