@@ -365,7 +365,7 @@ class Scene(Viewable, DescribedScene):
         none in C.
 
         Raises SceneError for what C cannot run: functions of events, loads and friction that events switch, elements of
-        a library of the user.
+        a library of the user, ropes without mass.
         """
         _refuse_unknown("export_c", unknown, (*RunSettings.keywords(), "inputs"))
         given = {"duration": duration, "tol": tol, "absolute_tol": absolute_tol, "quantities": quantities, "step": step,
