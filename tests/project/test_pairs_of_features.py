@@ -89,7 +89,10 @@ def outcome(row: Row) -> str:
                 _begin(scene, row["integrator"]) if is_picky(row) else scene.check()
         except fu.EquilibriumError as error:
             return f"{TOLD}: {error}"
-        except (fu.ConvergenceError, fu.EndOfCableError) as error:
+        except fu.ConvergenceError as error:
+            told = "energy grew without a source" in str(error) and "is too large" in str(error)
+            return f"{TOLD if told else type(error).__name__}: {error}"
+        except fu.EndOfCableError as error:
             return f"{type(error).__name__}: {error}"
         except fu.FunicularError as error:
             return f"{REFUSED}: {error}"

@@ -16,7 +16,8 @@ from covering import CoveringArray, Row, smallest
 from funicular.cli.main import app
 from typer.testing import CliRunner
 
-WITHOUT_A_SCENE = {"scenes", "schema", "import", "derive", "verify", "theory"}
+WITHOUT_A_SCENE = {"scenes", "schema", "import", "export", "derive", "verify", "theory"}
+"""Commands without a scene as their first argument."""
 NEVER = {"help": "prints and ends", "open_it": "opens a browser", "library": "needs a library of elements",
          "cluster": "needs a Dask scheduler", "workers": "starts processes", "retry_failed": "goes on with a file"}
 """Options that are left out, and why; tests of their own have them."""

@@ -15,11 +15,9 @@
 /* least contraction for it: first iterations reduce linear errors, later ones are slower */
 #define MIN_CONTRACTION 0.03
 #define ROUNDING_FACTOR 100.0 /* times the rounding of positions: an increment that is not rounding */
-/* of a matrix, in iterations: below its true cost, since an old one costs accuracy, too; of a full one with cables,
- * whose assembly takes as long as five iterations; and, of a net of bodies, whose factorisation costs as much as tens
- * of solves, a part of these: an iteration has a residual beside its solve */
+/* of a matrix, in iterations: below its true cost, since an old one costs accuracy, too; and, of a net of bodies, whose
+ * factorisation costs as much as tens of solves, a part of these: an iteration has a residual beside its solve */
 #define MATRIX_COST 2.0
-#define FULL_MATRIX_COST 3.0
 #define MATRIX_COST_SHARE 0.1
 /* largest ratio of the contraction of the residual, which weights stiffness more, to that of increments */
 #define RESIDUAL_UNDERESTIMATE 10.0
@@ -31,7 +29,6 @@
 /* Returns the cost of a matrix in iterations. */
 static double cost_of_matrix(const fu_run *run)
 {
-    if (run->newton.full && run->newton.n) return FULL_MATRIX_COST;
     return fmax(MATRIX_COST, MATRIX_COST_SHARE * run->newton.fronts->solves);
 }
 

@@ -45,22 +45,6 @@ static void copy_state(copier *c, const fu_model *model, fu_state *state)
     }
 }
 
-/* Returns whether checkpoints hold the factored Newton matrix: few unknowns, cables among them, and a method
- * that solves with it. */
-static int holds_matrix(const fu_run *run)
-{
-    return run->newton.full && run->newton.n && run->integrator->newton;
-}
-
-/* Copies a factored full matrix. */
-static void copy_full(copier *c, fu_system *s)
-{
-    const size_t n = (size_t)(s->n + s->m);
-    copy(c, s->full, sizeof(double) * n * n);
-    copy(c, s->pivot_full, sizeof(int) * n);
-    copy(c, &s->is_full, sizeof s->is_full);
-}
-
 /* Copies inputs and the signals that they give. */
 static void copy_inputs(copier *c, fu_run *run)
 {
@@ -73,8 +57,8 @@ static void copy_inputs(copier *c, fu_run *run)
     }
 }
 
-/* Copies all data on which later steps depend. Other factored matrices are left out: fu_pause drops the Newton matrix,
- * and fu_start computes that of eq 38. */
+/* Copies all data on which later steps depend. Factored matrices are left out: fu_pause drops the Newton matrix, and
+ * fu_start computes that of eq 38. */
 static void copy_all(copier *c, fu_run *run)
 {
     const fu_model *model = run->model;
@@ -90,7 +74,6 @@ static void copy_all(copier *c, fu_run *run)
     copy(c, &run->record.n, sizeof run->record.n);
     copy(c, &run->statistics, sizeof run->statistics);
     copy(c, &run->accelerator.evaluated, sizeof run->accelerator.evaluated);
-    if (holds_matrix(run)) copy_full(c, &run->newton);
     if (run->inputs) copy_inputs(c, run);
     copy(c, (char *)run + numbers, sizeof *run - numbers);
 }
@@ -99,10 +82,8 @@ static void copy_all(copier *c, fu_run *run)
  * which are inactive. Done at each pause, so that results do not depend on checkpoints. */
 void fu_pause(fu_run *run)
 {
-    if (!run->factored || !holds_matrix(run)) {
-        run->factored = 0;
-        run->h_factored = 0.0;
-    }
+    run->factored = 0;
+    run->h_factored = 0.0;
     run->residual_at = NAN;
     run->mass_is_near = 0;
     if (run->integrator->forget) run->integrator->forget(run);
@@ -139,23 +120,6 @@ static int finite_state(const fu_model *model, const fu_state *state)
     return fu_all_finite(&state->t, 1);
 }
 
-/* Returns whether a factored full matrix has finite numbers and rows of pivots within it. */
-static int possible_full(const fu_system *s)
-{
-    const int n = s->n + s->m;
-    for (int j = 0; j < n; ++j)
-        if (!in_range(s->pivot_full[j], j, n - 1)) return 0;
-    return fu_all_finite(s->full, (long)n * n);
-}
-
-/* Returns whether the data of the factored matrix are possible: only a full one is kept. */
-static int possible_matrix(const fu_run *run)
-{
-    if (!run->factored) return run->h_factored == 0.0;
-    return holds_matrix(run) && run->factored == 1 && run->newton.is_full == 1 && run->h_factored > 0.0 &&
-           run->h_factored <= MAX_STEP * run->duration && possible_full(&run->newton);
-}
-
 /* Returns whether the values of inputs, and their signals, are possible. */
 static int possible_inputs(const fu_run *run)
 {
@@ -173,11 +137,11 @@ static int possible_inputs(const fu_run *run)
 }
 
 /* Returns whether a run is in a state of fu_pause: at the time of its last row, an output time unless it may be between
- * them. */
+ * them, without a factored matrix */
 static int is_paused(const fu_run *run, int rows, int between)
 {
     return run->record.n == rows && (between || run->now.t == (rows - 1) * run->output_step) &&
-           run->now.t < run->duration && run->recorded == run->now.t && possible_matrix(run) &&
+           run->now.t < run->duration && run->recorded == run->now.t && !run->factored && run->h_factored == 0.0 &&
            (!run->inputs || possible_inputs(run));
 }
 

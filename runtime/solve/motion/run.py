@@ -226,15 +226,16 @@ class Prepared(NamedTuple):
     messages: list[str]
 
 
-def prepared(scene: SceneData, settings: RunSettings, initial: Start | None, made: type[Engine] = Engine) -> Prepared:
+def prepared(scene: SceneData, settings: RunSettings, initial: Start | None,
+             made: type[Engine] | None = None) -> Prepared:
     """Return the model, engine, event_handler and row notes of a run: all that does not belong to its integration.
 
-    made: the class of the engine.
+    made: another class of engines.
     """
     model = build(scene)
     if initial is not None:
         initial.start(model, scene)
-    engine, event_handler = made(model), EventHandler(scene, model)
+    engine, event_handler = (made or Engine)(model), EventHandler(scene, model)
     engine.handle_events(event_handler)
     messages = drop_redundant_rows(model, engine) + share_elements(engine, settings.threads)
     row_notes = RowNotes(scene, model, settings.step_taken or 0.0, settings.duration)
