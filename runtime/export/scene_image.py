@@ -58,8 +58,8 @@ def _refuse(scene: SceneData) -> None:
     """Raise SceneError for elements of the user, and ropes without mass."""
     for rope in scene.ropes.values():
         if not rope.mass:
-            raise SceneError(rope.where, "cannot be exported to C: Python computes its results from where it touches its "
-                             "sheaves", "leave mass=False out")
+            raise SceneError(rope.where, "cannot be exported to C: Python computes its results from where it touches "
+                             "its sheaves", "leave mass=False out")
     for cable in scene.cables.values():
         if cable.library is not None:
             raise SceneError(cable.where, "cannot be exported to C: its element is from a library of yours",
