@@ -83,7 +83,8 @@ SCENE_PLACES = {
         "solve/statics/lying.py", "solve/statics/string_start.py"],
     "pictures of each kind": ["results/animation/marks.py"],
     "ropes: their pictures, their meshes, places on them, forces in their sections": [
-        "choice/motion.py", "parts/locations.py", "results/animation/clips.py", "results/animation/frames.py",
+        "choice/motion.py", "export/scene_image.py", "parts/locations.py", "results/animation/clips.py",
+        "results/animation/frames.py",
         "results/animation/ropes.py", "results/error_estimate.py", "results/pictures.py",
         "results/section_forces/ropes.py"],
     "forces of supports, as the ends of ropes have them": ["results/targets.py"],
