@@ -10,7 +10,7 @@ from scipy.sparse import csr_array
 from .integrators.integrator import Integrator
 from .model.model import Model
 
-Image: TypeAlias = tuple[bytearray, list[tuple[int, int]], list[tuple[float, int]], dict[str, np.ndarray]]
+Image: TypeAlias = tuple[bytearray, list[tuple[int, int]], list[tuple[float, int]], int]
 STATUS: dict[int, str]
 CAUSES: dict[int, str | None]
 COUPLING_TYPES: tuple[str, ...]

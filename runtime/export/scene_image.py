@@ -34,7 +34,8 @@ def image_of(scene: SceneData, settings: RunSettings, initial: Start | None = No
     """
     _refuse(scene)
     settings = settings.model_copy(update={"threads": 1})
-    run, twin = (made_ready(scene, settings, initial, inputs) for _ in range(2))
+    run = made_ready(scene, settings, initial, inputs)
+    twin = made_ready(scene, settings, initial, inputs, like=run)
     handler = run.event_handler
     for function in handler.event_functions:
         if function.kind == "function":

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..base.interruptions import uninterrupted
 from ..errors import SceneError, near
+from ..model.breakpoints import INSTANT_TOLERANCE
 from ..parts.inputs import Input
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
@@ -120,7 +121,7 @@ class Simulation:
         rows, recorded_rows = [stepping.engine.last_row()], stepping.engine.n_rows
         while stepping.status == "running" and self.time < end:
             length = stepping.settings.output_step
-            if self.time + length < end * (1 + 1e-12):
+            if self.time + length < end * (1 + INSTANT_TOLERANCE):
                 stepping.step(length)
             else:
                 stepping.reach(end)

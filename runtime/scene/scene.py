@@ -42,6 +42,7 @@ if TYPE_CHECKING:
 
     from ..choice.choice import Choice
     from ..export.program import Exported
+    from ..parts.inputs import Input
     from ..results.equilibrium import Equilibrium
     from ..results.linear_model import LinearModel
     from ..results.modes import Modes
@@ -162,6 +163,20 @@ class Scene(Viewable, DescribedScene):
         scene, settings = (self, settings) if chosen is None else (chosen.scene, chosen.settings_of(settings))
         scene, state = scene._adjusted(settings, state)
         return scene, settings, state, chosen
+
+    def _driven(self, given: Mapping[str, Any], inputs: Sequence[str],
+                use: str) -> tuple[Self, RunSettings, Start | None, list[Input]]:
+        """Return the scene of a run with these settings, None for defaults, and with inputs, checked, the settings, the
+        state to start from, and the inputs; use: of the inputs, in messages.
+        """
+        from ..parts.inputs import with_inputs  # for these runs alone
+
+        scene, settings, state, chosen = self._settled({k: v for k, v in given.items() if v is not None})
+        driven, found = with_inputs(scene, inputs, use)
+        driven._check_for(settings)
+        if settings.initial in ("equilibrium", "relaxed") and state is None:
+            state = _at_rest(settings.initial, driven, None if chosen is None else chosen.rest)
+        return driven, settings, state, found
 
     def _adjusted(self, settings: RunSettings, state: Start | None) -> tuple[Self, Start | None]:
         """Return the scene and the state at the start of a run, adjusted where the scene's file adjusts parameters."""
@@ -323,18 +338,13 @@ class Scene(Viewable, DescribedScene):
         given = {"duration": duration, "tol": tol, "absolute_tol": absolute_tol, "quantities": quantities, "step": step,
                  "output_step": output_step, "integrator": integrator, "spectral_radius": spectral_radius,
                  "threads": threads, "model": model, "initial": initial}
-        from ..parts.inputs import with_inputs
         from ..results.simulation import Simulation  # brings SciPy
 
         known_end = duration is not None or "duration" in self.run_settings
         if not known_end:
             given["duration"] = 1.0 if output_step is None else 100.0 * output_step
-        scene, settings, state, _ = self._settled({k: v for k, v in given.items() if v is not None})
-        driven, found = with_inputs(scene, inputs, "simulation")
-        driven._check_for(settings)
         with enough_memory():
-            if settings.initial in ("equilibrium", "relaxed") and state is None:
-                state = _at_rest(settings.initial, driven, None)
+            driven, settings, state, found = self._driven(given, inputs, "simulation")
             return Simulation(driven, in_plane(driven), settings, state, {each.path: each for each in found}, known_end,
                               self.from_toml)
 
@@ -374,13 +384,8 @@ class Scene(Viewable, DescribedScene):
         with one_blas_thread, enough_memory():
             from ..export.program import write_program  # brings the engine
             from ..export.scene_image import image_of
-            from ..parts.inputs import with_inputs
 
-            scene, settings, state, chosen = self._settled({k: v for k, v in given.items() if v is not None})
-            driven, found = with_inputs(scene, inputs, "export_c")
-            driven._check_for(settings)
-            if settings.initial in ("equilibrium", "relaxed") and state is None:
-                state = _at_rest(settings.initial, driven, None if chosen is None else chosen.rest)
+            driven, settings, state, found = self._driven(given, inputs, "export_c")
             return write_program(folder, image_of(in_plane(driven), settings, state, found))
 
     def equilibrium(

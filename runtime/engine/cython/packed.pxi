@@ -3,20 +3,25 @@
 cdef class Packable(Report):
     """The memory that a run consists of, and the tables of the program to which it points."""
 
+    cdef list _all_blocks(self):
+        """Return the address and the size in bytes of all memory of a run, but for its breakpoints."""
+        return self.blocks + [
+            (<size_t>&self.model, sizeof(fu_model)), (<size_t>&self.run, sizeof(fu_run)),
+            (<size_t>&self.linear, sizeof(fu_linear_model)), (<size_t>&self.newton_fronts, sizeof(fu_fronts)),
+            (<size_t>&self.mass_fronts, sizeof(fu_fronts)),
+            (<size_t>self.event_functions, (self.run.n_event_functions + 1) * sizeof(fu_event_function))]
+
     def memory_blocks(self):
         """Return the blocks of memory of a run that is ready, (address, words (n,) as unsigned integers) each, in the order
         in which they were made.
 
         Pointers to functions of Python and to what the program keeps are null in them.
         """
-        m, run = &self.model, &self.run
+        run = &self.run
         run.call, run.context = NULL, NULL
-        own = [(<size_t>m, sizeof(fu_model)), (<size_t>run, sizeof(fu_run)), (<size_t>&self.linear, sizeof(fu_linear_model)),
-               (<size_t>&self.newton_fronts, sizeof(fu_fronts)), (<size_t>&self.mass_fronts, sizeof(fu_fronts)),
-               (<size_t>self.breakpoints, (run.n_breakpoints + 1) * sizeof(fu_breakpoint)),
-               (<size_t>self.event_functions, (run.n_event_functions + 1) * sizeof(fu_event_function))]
+        breakpoints = <size_t>self.breakpoints, (run.n_breakpoints + 1) * sizeof(fu_breakpoint)
         return [(address, np.asarray(<unsigned long long[:size // 8]><unsigned long long *><size_t>address).copy())
-                for address, size in self.blocks + own if size]
+                for address, size in [*self._all_blocks(), breakpoints] if size]
 
     @property
     def run_address(self):

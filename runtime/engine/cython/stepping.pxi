@@ -1,18 +1,5 @@
 # An engine that steps to times given one after the other.
 
-cdef enum:
-    MEASURED, TAKEN, PUT_BACK
-
-
-cdef size_t _copied(void *memory, size_t size, char *image, int what) noexcept:
-    """Copy memory to its place in an image, or back, or neither; return its size in bytes."""
-    if what == TAKEN:
-        memcpy(image, memory, size)
-    elif what == PUT_BACK:
-        memcpy(memory, image, size)
-    return size
-
-
 cdef class SteppedEngine(Engine):
     """One run of a model whose end, loads and drives are not known at its start."""
 
@@ -106,32 +93,28 @@ cdef class SteppedEngine(Engine):
         if fu_pass_breakpoint(&self.run, &now, 0):
             raise ArithmeticError("the equations are singular")
 
-    cdef size_t _copy(self, char *image, int what, list blocks) except 0:
-        """Copy all that changes in a run to an image, or back; return its size in bytes. blocks: of memory then."""
-        cdef size_t address, bytes, size = 0
-        run, m = &self.run, &self.model
-        size += _copied(run, sizeof(fu_run), image + size, what)
-        size += _copied(m, sizeof(fu_model), image + size, what)
-        size += _copied(&self.linear, sizeof(fu_linear_model), image + size, what)
-        size += _copied(self.event_functions, run.n_event_functions * sizeof(fu_event_function), image + size, what)
-        for address, bytes in blocks:
-            size += _copied(<void *>address, bytes, image + size, what)
-        return size
-
     def image(self):
-        """Return all that changes in a run: bytes, the breakpoints, and the last row; for this engine alone."""
-        blocks = [*self.blocks]
-        cdef bytearray taken = bytearray(self._copy(NULL, MEASURED, blocks))
-        self._copy(taken, TAKEN, blocks)
+        """Return all that changes in a run, for this engine alone: bytes of blocks of memory, the breakpoints, and the place
+        of the last row.
+        """
+        cdef size_t address, size, at = 0
+        blocks = self._all_blocks()
+        cdef bytearray taken = bytearray(sum([size for _, size in blocks]))
+        cdef char *image = taken
+        for address, size in blocks:
+            memcpy(image + at, <void *>address, size)
+            at += size
         points = [(self.run.breakpoints[k].t, self.run.breakpoints[k].jumps) for k in range(self.run.n_breakpoints)]
-        return taken, blocks, points, self.last_row()
+        self._note_last()
+        return taken, blocks, points, self.last
 
     def take_image(self, image):
         """Return to the state of an image of this engine, with the same bits."""
+        cdef size_t address, size, at = 0
         cdef bytearray taken = image[0]
-        self._copy(taken, PUT_BACK, image[1])
-        self.run.breakpoints = NULL  # of that time
+        cdef const char *memory = taken
+        for address, size in image[1]:
+            memcpy(<void *>address, memory + at, size)
+            at += size
         self._breakpoints(*(zip(*image[2]) if image[2] else ((), ())))
-        self.run.record.first, self.last = self.run.record.n, 0
-        for name, row in image[3].items():
-            self.arrays[name][:1] = row
+        self.run.record.first, self.last = self.run.record.n, image[3]

@@ -70,7 +70,7 @@ def basis_of(equations: Equations, scene: SceneData, sticking: Sequence[str], re
 
 
 def _minimal(equations: Equations, found: list[Coordinate], possible: int) -> Basis | None:
-    """Return the basis of named coordinates, None where they are not as many as there are, or not independent."""
+    """Return the basis of the named coordinates, None unless they are independent and as many as the motions."""
     if len(found) != possible or not possible:
         return None
     free = null_space(equations.C.toarray()) if equations.C.shape[0] else np.eye(equations.K.shape[0])

@@ -19,6 +19,7 @@ from ...model.states import body_rates, body_state, spatial
 from ...model.taut_ropes import TautPointModel
 from ...parts.event import Event
 from ...parts.scene_data import SceneData
+from ..notes.diagnosis import EMPTY
 
 LEAVES_TABLE_TEXT = "leaves the table of its fluid"
 """Text of the engine's event (engine/events/fluid_table.c)."""
@@ -174,10 +175,12 @@ class EventHandler:
         return [f'drag "{name}" leaves the table of its fluid at t = {time:.6g} s: beyond the edges the velocity stays '
                 "as it is there; take a larger table" for name, time in first.items()]
 
-    def stops_empty(self, number: int) -> bool:
-        """Return whether a rope's coupling with this number is a drum whose end stops the run; record that it did."""
+    def stops_empty(self, number: int, reason: int) -> bool:
+        """Return whether a rope's coupling with this number, which the rope has left for a reason, is a drum that has
+        run empty and whose end stops the run; record that it did.
+        """
         drum = self.model.couplings[number]
-        if not isinstance(drum, DrumModel | TautPointModel) or drum.ends_run_by != "stop":
+        if reason != EMPTY or not isinstance(drum, DrumModel | TautPointModel) or drum.ends_run_by != "stop":
             return False
         self.stopped_by = f'drum "{drum.name}", which has run empty,'
         return True

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple, Protocol
 
 from ...engine import Engine
 from ...model.model import Model
+from ...parts.settings import RunSettings
 from ..notes.row_notes import RowNotes
 
 MIN_BLOCKS = 100
@@ -21,8 +23,9 @@ class RowBlocks(NamedTuple):
     capacity: int
 
 
-def row_blocks(rows: int, row_bytes: int) -> RowBlocks:
+def row_blocks(settings: RunSettings, row_bytes: int) -> RowBlocks:
     """Return the blocks of a run, which depend neither on the clock nor on whether results are saved."""
+    rows = math.ceil(settings.duration / settings.output_step) + 1
     most = max(1, int(MAX_BUFFERED_BYTES // row_bytes))
     every = min(most, -(-rows // MIN_BLOCKS))
     return RowBlocks(every, min(rows, most // every * every) + 2)  # the start, and where a run is cut short

@@ -31,7 +31,7 @@ from ...parts.inputs import Input
 from ...parts.scene_data import SceneData
 from ...parts.settings import RunSettings
 from ..linear.threads import share_elements
-from ..notes.diagnosis import EMPTY, notes, trapped
+from ..notes.diagnosis import notes, trapped
 from ..notes.fast_turns import FastTurns
 from ..notes.linear_model_errors import beyond_linear_model
 from ..notes.row_notes import RowNotes
@@ -103,7 +103,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: ProgressDispl
     with interruptible():
         ready = prepared(scene, settings, initial)
     _check_size(ready.engine.row_bytes, settings, stream)
-    blocks = row_blocks(int(np.ceil(settings.duration / settings.output_step)) + 1, ready.engine.row_bytes)
+    blocks = row_blocks(settings, ready.engine.row_bytes)
     messages = messages_before(scene, settings, ready, initial)
     with interruptible():
         choice = choose(settings, scene, ready.model, ready.engine, stream.integrator if stream else None)
@@ -141,8 +141,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: ProgressDispl
     for message in messages:
         LOG.info("run: %s", message)
     return Simulated(run.model, run.engine, run.event_handler, status, messages, reason + why,
-                      getattr(method, "spectral_radius", None), set_up, started, noted,
-                      total, cpu)
+                     getattr(method, "spectral_radius", None), set_up, started, noted, total, cpu)
 
 
 def messages_before(scene: SceneData, settings: RunSettings, ready: Prepared, initial: Start | None) -> list[str]:
@@ -160,8 +159,8 @@ def messages_at_start(scene: SceneData, settings: RunSettings, run: Begun, initi
 
 
 def tried(scene: SceneData, run: Begun, method: Integrator, rival: Rival | None,
-           begun_with: Callable[[Integrator, bool], Begun], settings: RunSettings, blocks: RowBlocks,
-           stream: RowStream | None, trials: TrialCache | None) -> tuple[Begun, str | None, Integrator, str]:
+          begun_with: Callable[[Integrator, bool], Begun], settings: RunSettings, blocks: RowBlocks,
+          stream: RowStream | None, trials: TrialCache | None) -> tuple[Begun, str | None, Integrator, str]:
     """Return a run after the trials of its method and of its rivals, its status, its method, and the reasons for it.
 
     begun_with: returns the run anew with a method, and whether that is on trial.
@@ -327,32 +326,36 @@ class ReadyRun(NamedTuple):
     every: int
 
 
-def settled(scene: SceneData, settings: RunSettings, initial: Start | None) -> tuple[Integrator, str]:
-    """Return the integrator of a run, after trials of its rivals as at its start, and the reason. Raises SceneError."""
-    ready, clock = prepared(scene, settings, initial), StageClock(of_thread=False)
+def settled(scene: SceneData, settings: RunSettings, initial: Start | None,
+            ready: Prepared) -> tuple[Integrator, str]:
+    """Return the integrator of a run that is prepared, after trials of its rivals with others as at its start, and the
+    reason. Raises SceneError.
+    """
     method, reason, rival = choose(settings, scene, ready.model, ready.engine, None)
     if rival is None:
         return method, reason
-    blocks = row_blocks(int(np.ceil(settings.duration / settings.output_step)) + 1, ready.engine.row_bytes)
+    blocks, clock = row_blocks(settings, ready.engine.row_bytes), StageClock(of_thread=False)
 
     def begun_with(other: Integrator, on_trial: bool) -> Begun:
         anew = prepared(scene, settings, initial)
         return begun(scene, settings, anew, other, blocks, ProgressDisplay(), None, clock, on_trial)
 
-    run = begun(scene, settings, ready, method, blocks, ProgressDisplay(), None, clock, on_trial=True)
-    _, _, method, why = tried(scene, run, method, rival, begun_with, settings, blocks, None, None)
+    _, _, method, why = tried(scene, begun_with(method, True), method, rival, begun_with, settings, blocks, None, None)
     return method, reason + why
 
 
-def made_ready(scene: SceneData, settings: RunSettings, initial: Start | None = None,
-               inputs: Sequence[Input] = ()) -> ReadyRun:
+def made_ready(scene: SceneData, settings: RunSettings, initial: Start | None = None, inputs: Sequence[Input] = (),
+               like: ReadyRun | None = None) -> ReadyRun:
     """Return a run of a checked scene as `simulate` starts it, with room for one row; inputs: of the scene, of
-    `with_inputs`. Raises SceneError.
+    `with_inputs`; like: a run of the same scene and settings, whose integrator it takes. Raises SceneError.
     """
     model, engine, event_handler, _, _ = prepared(scene, settings, initial)
     take_inputs(model, engine, inputs, "export")
-    blocks = row_blocks(int(np.ceil(settings.duration / settings.output_step)) + 1, engine.row_bytes)
-    method, reason = settled(scene, settings, initial)
+    blocks = row_blocks(settings, engine.row_bytes)
+    if like is None:  # by an engine of its own: the choice leaves numbers in it
+        method, reason = settled(scene, settings, initial, prepared(scene, settings, initial))
+    else:
+        method, reason = like.method, like.reason
     tol = tol_of(settings, scene, method)
     engine.make_ready(**_for_engine(scene, settings, model, engine, method, tol), capacity=1)
     return ReadyRun(model, engine, event_handler, method, reason, blocks.every)
@@ -394,7 +397,7 @@ def _divided_step(settings: RunSettings) -> list[str]:
 def _ended(run: Begun, every: int, stream: RowStream | None) -> str:
     """Return the status where a run ends; a drum that has run empty may stop it as an event does."""
     status = run.engine.advance(run.observer, every, stream, shown=run.observer.is_shown)
-    if status == "rope_left" and run.engine.left[1] == EMPTY and run.event_handler.stops_empty(run.engine.left[0]):
+    if status == "rope_left" and run.event_handler.stops_empty(*run.engine.left):
         return "event"
     return str(status)
 

@@ -13,6 +13,7 @@ from ...base.interruptions import interruptible
 from ...base.stages import StageClock
 from ...engine import SteppedEngine
 from ...errors import SceneError
+from ...model.breakpoints import INSTANT_TOLERANCE
 from ...model.model import Model
 from ...parts.inputs import Input
 from ...parts.scene_data import SceneData
@@ -44,12 +45,10 @@ MAX_ROWS, MAX_ROWS_BYTES = 32, 1 << 20
 MIN_ROWS = 4
 SHORTEST = 4.0 * SMALLEST_STEP
 """Of the duration: shortest step that is taken; a run takes instants nearer to each other as one."""
-AT_ONCE = 1e-12
-"""Of the duration: distance of equal times, as in engine/equations/run.h."""
 
 
 class Snapshot(NamedTuple):
-    """All that a simulation is at a time: the engine, its events, inputs, and the place in its sequence of steps."""
+    """All that a simulation is at a time: engine with inputs, events, and the place in its sequence of steps."""
 
     image: Any
     settings: RunSettings
@@ -76,12 +75,12 @@ class Stepping:
         clock = StageClock(of_thread=False)
         begin = clock.wall
         with interruptible():
-            method, self.reason = settled(scene, settings, initial)
             ready = prepared(scene, settings, initial, SteppedEngine)
+            method, self.reason = settled(scene, settings, initial, ready)
             take_inputs(ready.model, ready.engine, inputs, "simulation")
             self.messages = messages_before(scene, settings, ready, initial)
             capacity = max(MIN_ROWS, min(MAX_ROWS, MAX_ROWS_BYTES // ready.engine.row_bytes))
-            blocks = row_blocks(int(np.ceil(settings.duration / settings.output_step)) + 1, ready.engine.row_bytes)
+            blocks = row_blocks(settings, ready.engine.row_bytes)
             self._set_up = clock.wall - begin
             self._run = begun(scene, settings, ready, method, blocks, ProgressDisplay(), None, clock,
                               capacity=capacity)
@@ -138,7 +137,7 @@ class Stepping:
 
     def reach(self, time: float) -> None:
         """Step to a time in s, unless the run ends before."""
-        if time > self.settings.duration * (1 + AT_ONCE):
+        if time > self.settings.duration * (1 + INSTANT_TOLERANCE):
             self._extend(time)
         engine = self.engine
         if self._has_inputs:
@@ -158,7 +157,7 @@ class Stepping:
         except BaseException:
             self._sequence = self.time, math.nan, 0
             raise
-        if self.status == "rope_left" and self.event_handler.stops_empty(engine.left[0]):
+        if self.status == "rope_left" and self.event_handler.stops_empty(*engine.left):
             self.status = "event"
 
     def _extend(self, time: float) -> None:
